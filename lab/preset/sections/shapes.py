@@ -202,7 +202,7 @@ def _fitted(contour: Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
 def caution(contours: Sequence[Contour], rule: str) -> str | None:
     """A warning about these outlines under a contact rule, in one sentence; None if there is nothing to warn of.
 
-    Of 24 pairs of discs with 50 lobes, dents of 0.03 R0, four gain energy by `continuous`; those of 0.076 R0 do not.
+    Of 24 pairs of discs with 50 lobes, dents of 0.03 R0, three gain energy by `continuous`; those of 0.076 R0 do not.
     """
     sharpest = min(contour.sharpest_dent / contour.radius for contour in contours)
     if rule != "continuous" or sharpest >= SHARP:

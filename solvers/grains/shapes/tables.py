@@ -1,5 +1,7 @@
 """Tables of outlines for kernels: points by place along the outline, polar radii by direction, no trigonometry."""
 
+from math import ceil, log2, pi
+
 import numpy as np
 import taichi as ti
 
@@ -10,6 +12,8 @@ from solvers.machine.state import State
 
 ERROR = 1e-6  # of R0, the largest error of a table
 LEAST, MOST = 64, 4096  # cells
+LOOKS = 128  # points of an outline, at least, from which contacts are sought
+MISSED = 1e-3  # of R0: overlap by which two contacts may differ that fit in between two of these points
 BETWEEN = np.array([0.25, 0.5, 0.75])  # of a cell, where the error is sampled; it is largest near the middle
 TINY = 1e-30
 FLAT = 1e3  # of a grain's radius: upper bound of a radius of curvature
@@ -27,6 +31,7 @@ class Tables:
 
     def __init__(self, arrays: State, outlines: list[Contour]):
         self.cells = cells_for(outlines)
+        self.looks = looks_for(outlines, self.cells)
         own = arrays.under("outlines")
         self.curve = own.holding(
             "curve", np.array([curve_cells(outline, self.cells) for outline in outlines]), "outline cell number"
@@ -97,6 +102,21 @@ class Tables:
 
 
 @ti.func
+def advanced(own, step):
+    """Point of an outline and its derivatives (`Tables.trace`) after a short step, to second order."""
+    return ti.Vector(
+        [
+            own[0] + step * (own[2] + 0.5 * step * own[4]),
+            own[1] + step * (own[3] + 0.5 * step * own[5]),
+            own[2] + step * own[4],
+            own[3] + step * own[5],
+            own[4],
+            own[5],
+        ]
+    )
+
+
+@ti.func
 def radius_of_curvature(cube, turns, size):
     """The ratio cube/turns, with an absolute value of at most FLAT times `size`."""
     least = cube / (FLAT * size)
@@ -129,6 +149,16 @@ def cells_for(outlines: list[Contour]) -> int:
         if count > MOST:
             raise BadOutline(f"the outline bends too sharply for a table of {MOST} points.")
     return count
+
+
+def looks_for(outlines: list[Contour], cells: int) -> int:
+    """Points of an outline from which contacts are sought, a power of two.
+
+    Two minima and their saddle may hide between points a distance h apart; where the curvature changes by κ' along the
+    outlines, their gaps then differ by at most κ' h³/12.
+    """
+    wanted = 2.0 * pi * (max(one.sharpest_change * one.radius**2 for one in outlines) / (12.0 * MISSED)) ** (1 / 3)
+    return min(max(LOOKS, 2 ** ceil(log2(max(wanted, 1.0)))), cells)
 
 
 def table_error(outline: Contour, count: int) -> float:

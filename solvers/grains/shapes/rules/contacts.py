@@ -5,7 +5,7 @@ import taichi as ti
 from solvers.grains.contacts import GIVEN_APART, Contacts, gathered
 from solvers.grains.laws.chosen import PAIR, WALL
 from solvers.grains.laws.extremes import greater, lesser
-from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z
+from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, SURE
 
 
 @ti.data_oriented
@@ -63,6 +63,8 @@ class ShapedContacts(Contacts):
                 p = block * pairs.lanes + lane
                 listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
                 i, j = ti.min(listed, mate), ti.max(listed, mate)
+                if ti.static(hasattr(pairs, SURE)):
+                    pairs.sure[u, p][0] -= self.rest.passed(g, w, i, j, dt)
                 c, d = self.rule.pair(g, pairs, w, i, j, u, p, True), ti.Vector([0.0 for _ in range(HOLDS + 1)])
                 if self.unsettled(pairs, u, p, c):
                     c[OVERLAP] = -g.reach[w, i]
@@ -184,10 +186,13 @@ class ShapedContacts(Contacts):
     ):
         """Apply the force of contact p to its grain and to the wall."""
         i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
+        velocity = self.walls.velocity(feature, shift)
+        if ti.static(hasattr(contacts, SURE)):
+            speed = ti.abs(g.now[0][w, i] - velocity[0]) + ti.abs(g.now[1][w, i] - velocity[1])
+            contacts.sure[u, p][0] -= dt * (speed + g.reach[w, i] * ti.abs(g.spin_now[w, i]))
         c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
         if self.unsettled(contacts, u, p, c):
             c[OVERLAP] = -g.reach[w, i]
-        velocity = self.walls.velocity(feature, shift)
         lever = lever_of(c, 0.5)
         rate, slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
         n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])

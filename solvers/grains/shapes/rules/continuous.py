@@ -4,10 +4,10 @@ from math import pi
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import within
+from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.shapes.grains import with_disc
-from solvers.grains.shapes.pose import turned, turned_back
+from solvers.grains.shapes.pose import turned
 from solvers.grains.shapes.rules import osculating, rest
 from solvers.grains.shapes.rules.kept import Kept
 from solvers.grains.shapes.rules.osculating import Osculating
@@ -34,24 +34,23 @@ from solvers.grains.shapes.rules.tracked import (
     TRIES,
     Places,
     Tracked,
-    advanced,
 )
-from solvers.grains.shapes.rules.wall import SeenWalls
-from solvers.grains.shapes.tables import TINY, Tables
+from solvers.grains.shapes.rules.wall import SeenWalls, slopes
+from solvers.grains.shapes.tables import TINY, Tables, advanced
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
 ROOM = 32  # most contacts of a grain with another grain or with one wall
 NEAR = 1.0 / 16.0  # of both outlines' cells together: how far a contact may move between rebuilds and be identified
-PLACES = 8  # on either side of a contact, checked for new contacts
+WIDE = 1.0 / 8.0  # of an outline: range on either side of a contact that is looked at for new ones
+FORESIGHT = 0.5  # of the way after which the gap may get a new minimum at a place: it may be sooner between places
+AGAIN = 1e-3  # of a grain's reach: the least way from one look to the next
 # Elements of `Tracked.contact` that are passed on: for any contact, and for one between grains.
 SAID = OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS
 SAID_OF_PAIR = *SAID, CURVED_I, CURVED_J
-WIDE = 1.0 / 8.0  # of an outline: range of the PLACES on one side
 ATTEMPTS = 8  # Newton steps to find a contact again before it counts as ended or lost
 GROWN = 2.0  # value of HOLDS for a contact that exists while its pair must be searched again
-SELDOM = 4  # steps between checks of these places
 
 
 @ti.data_oriented
@@ -60,7 +59,12 @@ class Continuous:
 
     A contact is stored by its places on the outlines and those of the saddle before it (`Tracked`), which are updated
     by one Newton step per time step. Contacts are sought when lists are rebuilt. If some outlines are non-convex
-    (`bent`), new ones are also sought next to the known ones, one place at a time; only these outlines have saddles.
+    (`bent`), there are saddles, and new ones are also looked for next to known contacts that overlap. A minimum and a
+    saddle appear where the slope of the gap, which rises away from a contact, comes back to zero. It is found at places
+    as far apart as those from which contacts are sought. As the grains move past each other by m, no slope there
+    changes by more than m (κ_j/(1 + κ_j gap) + 1/R), with κ_j the curvature of the other outline and R the grains'
+    reach, nor a gap by more than m. So the next look is due when the grains have moved by half of what the least slope
+    or gap allows, however many steps that takes.
     """
 
     def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
@@ -74,6 +78,8 @@ class Continuous:
         self.pair_memory, self.wall_memory = self.kept.pair_memory, self.kept.wall_memory
         self.farthest, self.most = NEAR * self.tables.cells, ROOM
         self.places = Places(arrays, units.axis, ROOM)
+        self.spacing = self.tables.cells // self.tracked.looks
+        self.places_aside = int(WIDE * self.tracked.looks)
 
     @ti.func
     def seek_pair(self, g: ti.template(), w, i, j, margin, u):
@@ -193,30 +199,32 @@ class Continuous:
         return contact
 
     @ti.func
-    def next_look(self, contacts: ti.template(), u, p):
-        """Distance (cells) from contact p to the place to check now, to either side in turn; in most steps 0: none."""
-        k = contacts.looked[u, p][0] + 1.0
-        k = ti.select(k < SELDOM * 2.0 * PLACES, k, 0.0)
-        contacts.looked[u, p][0] = k
-        turn = ti.cast(k, ti.i32)
-        look = turn // SELDOM
-        away = (1.0 + look // 2) * ti.static(WIDE * self.tables.cells / PLACES)
-        return ti.select(turn % SELDOM == 0, ti.select(look % 2 == 0, away, -away), 0.0 * away)
-
-    @ti.func
     def grown(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
         """Whether a new contact and saddle have appeared next to an overlapping contact, or a saddle is missing."""
-        away, new = self.next_look(pairs, u, p), False
-        if away != 0.0 and self.tables.convex[g.shape[w, i]] * self.tables.convex[g.shape[w, j]] == 0.0:
-            side, before = ti.select(away > 0.0, 1.0, -1.0), self.kept.beside(pairs, u, p, -1.0)
+        new = False
+        if (
+            self.kept.is_due(pairs, u, p)
+            and self.tables.convex[g.shape[w, i]] * self.tables.convex[g.shape[w, j]] == 0.0
+        ):
+            one, two, apart = g.outline(w, i), g.outline(w, j), g.apart(w, i, j)
+            a, sure, turns = pairs.place_first[u, p][0], pairs.reach[u, p][0], 1.0 / pairs.reach[u, p][0]
+            along = ti.static(self.spacing) * g.radius[w, i] / g.radius[w, j]
+            for turn in range(2):
+                side, b, k = 1.0 - 2.0 * turn, pairs.place_second[u, p][0], 1
+                way = self.kept.free_way(pairs, u, p, side)
+                known = way < self.tables.cells
+                while k <= self.places_aside and k * self.spacing < way and not new:
+                    c = self.tracked.fall(one, two, apart, a + side * k * self.spacing, b - side * along)
+                    b, new = c[1], c[2] < 0.0 and side * c[0] > 0.0
+                    sure = lesser(sure, greater(c[2], -FORESIGHT * side * c[0] / (c[3] + turns)))
+                    # A known contact beyond a gap overlaps on its own.
+                    k = ti.select(known and c[2] > 0.0, self.places_aside + 1, k + 1)
+            before = self.kept.beside(pairs, u, p, -1.0)
             back = ti.select(before == p, 0.0, self.kept.way_back(pairs, u, p, before))
-            missing = side < 0.0 and back > 0.0 and back < 0.5 * self.tables.cells and pairs.saddle_first[u, p][0] < 0.0
-            away = ti.select(missing, -0.5 * back, away)
-            a = pairs.place_first[u, p][0] + away
-            b = pairs.place_second[u, p][0] - away * g.radius[w, i] / g.radius[w, j]
-            one, two = g.outline(w, i), g.outline(w, j)
-            c = self.tracked.fall(one, two, g.apart(w, i, j), a, b)
-            new = c[2] < 0.0 and (missing or (side * c[0] > 0.0 and not self.kept.beyond(pairs, u, p, away)))
+            if not new and back > 0.0 and back < 0.5 * self.tables.cells and pairs.saddle_first[u, p][0] < 0.0:
+                b = pairs.place_second[u, p][0] + 0.5 * back * g.radius[w, i] / g.radius[w, j]
+                new = self.tracked.fall(one, two, apart, a - 0.5 * back, b)[2] < 0.0
+            self.kept.look_again(pairs, u, p, ti.select(new, 0.0 * sure, sure), AGAIN * pairs.reach[u, p][0])
         return new
 
     @ti.func
@@ -235,7 +243,7 @@ class Continuous:
         """Find the contacts of a grain with a wall with gaps below a margin (m); returns their number."""
         found, looks = 0, ti.static(self.tracked.looks)
         stride = ti.static(self.tables.cells // self.tracked.looks)
-        target = self.target(g, w, i, feature, shift)
+        target = self.walls.target(g, w, i, feature, shift)
         outline = g.outline(w, i)
         earlier = self.rough_gap(outline, feature, target, -2 * stride)
         last = self.rough_gap(outline, feature, target, -stride)
@@ -282,20 +290,6 @@ class Continuous:
             self.places.i[u, before] = place
             found += 1
         return found
-
-    @ti.func
-    def target(self, g: ti.template(), w, i, feature, shift: ti.template()):
-        """A wall in a grain's frame: a segment's normal and distance (m) from the centre, or a corner's position."""
-        seen = ti.Vector([ti.cast(0.0, g.real), ti.cast(0.0, g.real), ti.cast(0.0, g.real)])
-        if feature < self.walls.walls.segments:
-            face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
-            normal = turned_back(g.turn(w, i), ti.Vector([ti.cast(face[0], g.real), ti.cast(face[1], g.real)]))
-            seen = ti.Vector([normal[0], normal[1], ti.cast(face[2], g.real)])
-        else:
-            point = self.walls.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
-            corner = turned_back(g.turn(w, i), -ti.Vector([ti.cast(point[0], g.real), ti.cast(point[1], g.real)]))
-            seen = ti.Vector([corner[0], corner[1], ti.cast(0.0, g.real)])
-        return seen
 
     @ti.func
     def rough_gap(self, outline: ti.template(), feature, target, cell):
@@ -347,14 +341,23 @@ class Continuous:
 
     @ti.func
     def grown_on_wall(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
-        """As `grown`, for a grain on a segment."""
-        away, new = self.next_look(contacts, u, p), False
-        if away != 0.0 and self.tables.convex[g.shape[w, i]] == 0.0:
-            target, a = self.target(g, w, i, feature, shift), contacts.place_first[u, p][0] + away
-            own = g.radius[w, i] * self.tables.trace(g.shape[w, i], a)
-            inside = target[2] + own[0] * target[0] + own[1] * target[1] < 0.0
-            falls = away * (own[2] * target[0] + own[3] * target[1]) < 0.0
-            new = inside and falls and not self.kept.beyond(contacts, u, p, away)
+        """As `grown`, for a grain on a segment, along which its slopes change as it turns alone."""
+        new = False
+        if self.kept.is_due(contacts, u, p) and self.tables.convex[g.shape[w, i]] == 0.0:
+            target, a, sure = self.walls.target(g, w, i, feature, shift), contacts.place_first[u, p][0], g.reach[w, i]
+            for turn in range(2):
+                side, k = 1.0 - 2.0 * turn, 1
+                way = self.kept.free_way(contacts, u, p, side)
+                known = way < self.tables.cells
+                while k <= self.places_aside and k * self.spacing < way and not new:
+                    own = g.radius[w, i] * self.tables.trace(g.shape[w, i], a + side * k * self.spacing)
+                    gap = target[2] + own[0] * target[0] + own[1] * target[1]
+                    rise = side * (own[2] * target[0] + own[3] * target[1])
+                    new = gap < 0.0 and rise < 0.0
+                    rise *= FORESIGHT * g.reach[w, i] / ti.sqrt(own[2] * own[2] + own[3] * own[3])
+                    sure = lesser(sure, greater(gap, rise))
+                    k = ti.select(known and gap > 0.0, self.places_aside + 1, k + 1)
+            self.kept.look_again(contacts, u, p, ti.select(new, 0.0 * sure, sure), AGAIN * g.reach[w, i])
         return new
 
     @ti.func
@@ -363,7 +366,7 @@ class Continuous:
     ):
         """The contact or saddle of a grain with a wall near a place, in the tank's frame; see `against`."""
         outline = g.outline(w, i)
-        c = self.against(outline, feature, self.target(g, w, i, feature, shift), way, place, moves)
+        c = self.against(outline, feature, self.walls.target(g, w, i, feature, shift), way, place, moves)
         normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
         point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
         counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
@@ -380,11 +383,11 @@ class Continuous:
         """
         shape, scale, corner = outline.shape, outline.scale, feature >= self.walls.walls.segments
         a, own = place, scale * self.tables.trace(shape, place)
-        s = self.slopes(own, target, corner)
+        s = slopes(own, target, corner)
         if ti.static(moves):
             step = -way * within(s[0] / (ti.abs(s[1]) + TINY), ti.static(LONGEST * self.tables.cells / (2.0 * pi)))
             a, own = place + step, advanced(own, step)
-            s = self.slopes(own, target, corner)
+            s = slopes(own, target, corner)
         inverse = 1.0 / ti.sqrt(s[2])
         outward = ti.Vector([own[3], -own[2]]) * inverse
         gap = target[2] + own[0] * target[0] + own[1] * target[1]
@@ -396,13 +399,3 @@ class Continuous:
         near = -gap < DEEP * scale * self.tables.smallest[shape]
         holds = ti.select(near and way * s[1] > 0.0 and ti.abs(miss) < CLOSE and facing < 0.0, 1.0, 0.0)
         return ti.Vector([-gap, ny, nz, own[0], own[1], self.tables.wrapped(a), 0.0 * a, holds])
-
-    @ti.func
-    def slopes(self, own, target, corner):
-        """First and second derivative by the place of the gap (half its square for a corner), and |p'|²."""
-        x, y = target[0], target[1]
-        size = own[2] * own[2] + own[3] * own[3]
-        more = 0.0 * x
-        if corner:
-            x, y, more = own[0] - target[0], own[1] - target[1], size
-        return ti.Vector([own[2] * x + own[3] * y, own[4] * x + own[5] * y + more, size])

@@ -2,11 +2,12 @@
 
 import taichi as ti
 
-from solvers.grains.shapes.rules.rest import STILL
+from solvers.grains.laws.extremes import greater, lesser
+from solvers.grains.shapes.rules.rest import STILL, SURE
 from solvers.grains.shapes.rules.tracked import NONE, Tracked
 
 # Memory of a contact with a wall, and what a contact of two grains has in addition; *_BENT for non-convex outlines.
-WALL, WALL_BENT = ("place_first",), ("saddle_first", "looked")
+WALL, WALL_BENT = ("place_first",), ("saddle_first", SURE)
 PAIR, PAIR_BENT = ("place_second",), ("saddle_second",)
 MET = 1.0 / 64.0  # of an outline: a contact that is no longer found has ended in a saddle nearer than this
 
@@ -17,7 +18,8 @@ class Kept:
 
     `place_first` and `place_second` are the places of a contact on both outlines, `saddle_first` and `saddle_second`
     those of the saddle before it in the order along the first outline, or NONE. Contacts of a pair are adjacent
-    entries. An ended or lost contact has its last place less one whole turn. `looked` counts steps.
+    entries. An ended or lost contact has its last place less one whole turn. `sure` is how far (m) the two may still
+    move past each other until new contacts beside this one are looked for.
     """
 
     def __init__(self, tracked: Tracked, bent: bool):
@@ -95,6 +97,8 @@ class Kept:
     @ti.func
     def end_with_own(self, contacts: ti.template(), u, p):
         """End contact p together with the saddle before it."""
+        for side in ti.static((-1.0, 1.0)):
+            contacts.sure[u, self.beside(contacts, u, p, side)][0] = 0.0  # it has not looked beyond p
         if not self.is_lost(contacts, u, p):
             self.lose(contacts, u, p)
         contacts.saddle_first[u, p][0] = NONE
@@ -120,11 +124,21 @@ class Kept:
         return self.tables.wrapped(contacts.place_first[u, p][0] - contacts.place_first[u, q][0])
 
     @ti.func
-    def beyond(self, contacts: ti.template(), u, p, away):
-        """Whether the place `away` (cells) from contact p lies beyond a known saddle or another contact."""
-        side = ti.select(away > 0.0, 1.0, -1.0)
+    def free_way(self, contacts: ti.template(), u, p, side):
+        """Distance (cells) from contact p to the next known saddle or contact of its pair on a side; huge: none."""
         other = self.beside(contacts, u, p, side)
-        far, between = ti.abs(away), ti.select(side > 0.0, other, p)
-        saddle = self.tables.wrapped(side * (contacts.saddle_first[u, between][0] - contacts.place_first[u, p][0]))
-        contact = self.tables.wrapped(side * (contacts.place_first[u, other][0] - contacts.place_first[u, p][0]))
-        return other != p and (far > contact or (contacts.saddle_first[u, between][0] >= 0.0 and far > saddle))
+        between = ti.select(side > 0.0, other, p)
+        place, saddle = contacts.place_first[u, p][0], contacts.saddle_first[u, between][0]
+        way = self.tables.wrapped(side * (contacts.place_first[u, other][0] - place))
+        way = ti.select(saddle >= 0.0, lesser(way, self.tables.wrapped(side * (saddle - place))), way)
+        return ti.select(other == p, 2.0 * self.tables.cells, way)
+
+    @ti.func
+    def is_due(self, contacts: ti.template(), u, p):
+        """Whether the grains have moved so far that new contacts beside contact p must be looked for."""
+        return contacts.sure[u, p][0] <= 0.0
+
+    @ti.func
+    def look_again(self, contacts: ti.template(), u, p, sure, least):
+        """Have the next look beside contact p be due when the grains have moved by `sure` (m), but at the `least` m."""
+        contacts.sure[u, p][0] = greater(sure, least)

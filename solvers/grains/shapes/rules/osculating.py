@@ -75,10 +75,18 @@ class Osculating(Rest):
     @ti.func
     def still(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d):
         """How far (m) a contact may slide, or grains that are apart move, until the rule must be evaluated again."""
-        first, second = self.slides[g.shape[w, i]], self.slides[g.shape[w, j]]
-        still = lesser(first * g.radius[w, i], second * g.radius[w, j])
-        still = ti.select(c[OVERLAP] > 0.0, still, -c[OVERLAP])
+        still = ti.select(c[OVERLAP] > 0.0, self.slide(g, w, i, j), -c[OVERLAP])
         return ti.select(c[HOLDS] == 1.0, still, 0.0 * still)
+
+    @ti.func
+    def slide(self, g: ti.template(), w, i, j):
+        """How far (m) a contact of two grains may slide."""
+        return lesser(self.slides[g.shape[w, i]] * g.radius[w, i], self.slides[g.shape[w, j]] * g.radius[w, j])
+
+    @ti.func
+    def passed(self, g: ti.template(), w, i, j, dt):
+        """How far (m) a contact has slid since the last evaluation."""
+        return self.slide(g, w, i, j)
 
 
 @ti.func

@@ -14,6 +14,7 @@ OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS = range(6)
 # an overlap and HARDLY for a normal, each times a radius over the outlines' radii of curvature.
 HARDLY = 1e-5
 STILL = "still"
+SURE = "sure"  # memory of rules: how far (m) two grains may still move until new contacts are looked for
 SEEN = (STILL, "apart_y", "apart_z", "angle_first", "angle_second")
 SAID = ("overlap", "normal_y", "normal_z", "point_y", "point_z")
 CACHE_LINES = 16  # numbers in two cache lines, a distance at which no two threads write to one line
@@ -133,9 +134,7 @@ class Rest:
     def note(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d, dt):
         """Store contact p of grains i and j, and its saddle, as the rule has just given them."""
         still = self.still(g, pairs, w, i, j, u, p, c, d)
-        turns = g.reach[w, i] * ti.abs(g.spin_now[w, i]) + g.reach[w, j] * ti.abs(g.spin_now[w, j])
-        speed = ti.abs(g.now[0][w, i] - g.now[0][w, j]) + ti.abs(g.now[1][w, i] - g.now[1][w, j]) + turns
-        still = ti.select(speed * dt < still, still, 0.0 * still)
+        still = ti.select(self.step(g, w, i, j, dt) < still, still, 0.0 * still)
         block, lane, at = p // self.lanes, p % self.lanes, self.place(u)
         for k in ti.static(range(len(SAID))):
             self.now[k][at][lane] = c[k]
@@ -149,6 +148,17 @@ class Rest:
             self.remember(self.contact, pairs, u, block, lane, c)
             if ti.static(self.bent):
                 self.remember(self.saddle, pairs, u, block, lane, d)
+
+    @ti.func
+    def step(self, g: ti.template(), w, i, j, dt):
+        """Upper bound on how far (m) any points of two grains move past each other in a step."""
+        turns = g.reach[w, i] * ti.abs(g.spin_now[w, i]) + g.reach[w, j] * ti.abs(g.spin_now[w, j])
+        return dt * (ti.abs(g.now[0][w, i] - g.now[0][w, j]) + ti.abs(g.now[1][w, i] - g.now[1][w, j]) + turns)
+
+    @ti.func
+    def passed(self, g: ti.template(), w, i, j, dt):
+        """Upper bound on how far (m) two grains that touch have moved past each other since the last evaluation."""
+        return self.step(g, w, i, j, dt) + HARDLY * lesser(g.radius[w, i], g.radius[w, j])
 
     @ti.func
     def remember(self, names: ti.template(), pairs: ti.template(), u, block, lane, c):

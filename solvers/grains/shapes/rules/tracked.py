@@ -6,10 +6,9 @@ import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.shapes.pose import turned, turned_back
-from solvers.grains.shapes.tables import Tables, radius_of_curvature
+from solvers.grains.shapes.tables import Tables, advanced, radius_of_curvature
 from solvers.machine.state import Axis, State
 
-LOOKS = 128  # points of an outline from which contacts are sought
 TRIES = 40  # most Newton steps in seeking a contact
 LONGEST = 0.1  # rad of polar angle: the longest Newton step along an outline
 FLATTEST = 1e-5  # relative curvature, as a share of that of two discs, below which a Newton step is limited
@@ -54,7 +53,7 @@ class Tracked:
     """
 
     def __init__(self, tables: Tables):
-        self.tables, self.looks = tables, min(LOOKS, tables.cells)
+        self.tables, self.looks = tables, tables.looks
         self.flattest = FLATTEST * 2.0 * pi / tables.cells
 
     @ti.func
@@ -125,9 +124,10 @@ class Tracked:
 
     @ti.func
     def fall(self, one: ti.template(), two: ti.template(), apart, place_i, place_j):
-        """Decrease of the gap along i at a place, the place on j nearest to it, and the gap there.
+        """Decrease of the gap along i at a place, the place on j nearest to it, the gap (m), and the tangent's rate.
 
-        Decrease and gap have the factor |t_j| (m per cell), since only their signs are used.
+        The decrease is a sine, that between the tangents. The rate (1/m) is that at which the tangent at the nearest
+        place turns as i moves along j, κ_j/(1 + κ_j gap).
         """
         between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
         first, b = self.seen(one, between, place_i), place_j
@@ -137,7 +137,11 @@ class Tracked:
             second = two.scale * self.tables.trace(two.shape, b)
         d, g = ti.Vector([first[2], first[3]]), ti.Vector([second[2], second[3]])
         gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
-        return ti.Vector([-d.cross(g), b, gap.cross(g)])
+        size, bends = g.norm_sqr(), g.cross(ti.Vector([second[4], second[5]]))
+        length = ti.sqrt(size)
+        away = gap.cross(g) / length
+        rate = ti.abs(bends) / greater(size * length + away * bends, 0.1 * size * length)
+        return ti.Vector([-d.cross(g) / (length * d.norm()), b, away, rate])
 
     @ti.func
     def saddle(self, one: ti.template(), two: ti.template(), apart, low_i, low_j, high_i, high_j):
@@ -281,18 +285,3 @@ def curved(own, scale):
     """Radius of curvature (m) of an outline from its derivatives at a point (`Tables.trace`)."""
     along = ti.Vector([own[2], own[3]]).norm()
     return radius_of_curvature(along * along * along, own[2] * own[5] - own[3] * own[4], scale)
-
-
-@ti.func
-def advanced(own, step):
-    """Point of an outline and its derivatives (`Tables.trace`) after a short step, to second order."""
-    return ti.Vector(
-        [
-            own[0] + step * (own[2] + 0.5 * step * own[4]),
-            own[1] + step * (own[3] + 0.5 * step * own[5]),
-            own[2] + step * own[4],
-            own[3] + step * own[5],
-            own[4],
-            own[5],
-        ]
-    )

@@ -36,6 +36,20 @@ class SeenWalls:
         return ti.Vector([-tz * side, ty * side, distance * side])
 
     @ti.func
+    def target(self, g: ti.template(), w, i, feature, shift: ti.template()):
+        """A wall in a grain's frame: a segment's normal and distance (m) from the centre, or a corner's position."""
+        seen = ti.Vector([ti.cast(0.0, g.real), ti.cast(0.0, g.real), ti.cast(0.0, g.real)])
+        if feature < self.walls.segments:
+            face = self.facing(feature, shift, g.y[w, i], g.z[w, i])
+            normal = turned_back(g.turn(w, i), ti.Vector([ti.cast(face[0], g.real), ti.cast(face[1], g.real)]))
+            seen = ti.Vector([normal[0], normal[1], ti.cast(face[2], g.real)])
+        else:
+            point = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+            corner = turned_back(g.turn(w, i), -ti.Vector([ti.cast(point[0], g.real), ti.cast(point[1], g.real)]))
+            seen = ti.Vector([corner[0], corner[1], ti.cast(0.0, g.real)])
+        return seen
+
+    @ti.func
     def counts_on_segment(self, feature, shift: ti.template(), y, z):
         """Whether a point projects onto a segment."""
         point = self.walls.from_start(feature, shift, y, z)
@@ -65,6 +79,17 @@ class SeenWalls:
             overlap = -FAR
         point = corner - overlap * normal
         return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], 1.0])
+
+
+@ti.func
+def slopes(own, target, corner):
+    """First and second derivative by the place of the gap (half its square for a corner), and |p'|²."""
+    x, y = target[0], target[1]
+    size = own[2] * own[2] + own[3] * own[3]
+    more = 0.0 * x
+    if corner:
+        x, y, more = own[0] - target[0], own[1] - target[1], size
+    return ti.Vector([own[2] * x + own[3] * y, own[4] * x + own[5] * y + more, size])
 
 
 def _ends(walls: Walls) -> np.ndarray:

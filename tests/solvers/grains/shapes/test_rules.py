@@ -8,7 +8,6 @@ from scipy import ndimage, optimize
 
 from solvers.grains.shapes.cargo import cargo, cargoes
 from solvers.grains.shapes.contour import Contour
-from solvers.grains.shapes.rules.discrete import SELDOM
 from solvers.grains.shapes.tables import ERROR, angle_of, cells_for, curve_cells, polar_cells
 from solvers.machine.errors import BadOutline
 from tests.oracles.crossing import depth
@@ -21,6 +20,7 @@ COUNT, SOME = 2000, 120  # pairs; those that are looked at one by one
 NODES = 100
 SKIN = 0.1
 SHALLOW = 0.05
+FOLLOWED = 64  # steps
 
 
 def mirrored(contour):
@@ -122,14 +122,14 @@ def test_without_overlap_no_gap_is_smaller_than_the_reported_bound(asked):
 
 
 def test_the_deepest_nodes_are_tracked_as_grains_slide_and_turn(asked):
-    """Of convex grains, for as long as the rule does before it looks at all nodes; then few have been lost."""
+    """Of convex grains, farther than the rule goes before it looks at all nodes; then few have been lost."""
     convex = [k for k, outline in enumerate(OUTLINES) if outline.convex]
     pairs = random_pairs([OUTLINES[k] for k in convex], COUNT, 1, (-0.01, 0.0))
     pairs = replace(pairs, shape=np.array(convex)[pairs.shape])
     random, first = np.random.default_rng(5), asked.by_nodes(pairs)[:, 0]
     start = asked.node.to_numpy()
     shift, spin = random.uniform(-5e-5, 5e-5, pairs.place.shape), random.uniform(-1e-3, 1e-3, pairs.angle.shape)
-    for k in range(1, SELDOM):
+    for k in range(1, FOLLOWED):
         moved = replace(pairs, place=pairs.place + k * shift, angle=pairs.angle + k * spin)
         followed = asked.by_nodes_beside(moved)[:, 0]
     gone = np.abs(asked.node.to_numpy() - start).max(axis=1)
