@@ -28,7 +28,7 @@ ACCOUNT = {"water_total": 1.0, "water_viscous": 1.0, "water_diffusive": 1.0, "wa
 
 def swayed(model: str, rows: int) -> Scene:
     """A tank in each world, swayed at one of the frequencies."""
-    scene, worlds = still(WIDTH, 0.2, DEPTH, rows, model=model), len(SHARES)
+    scene, worlds = still(WIDTH, 0.2, DEPTH, rows, model=model, smoothing=3.0), len(SHARES)
     moved = [(Sway(SIZE, share * LIQUID.rates[0] / (2.0 * np.pi)),) for share in SHARES]
     scene = replace(
         scene,
@@ -79,24 +79,19 @@ def test_masses_on_springs_load_a_swayed_tank_as_graham_and_rodriguez_say():
 
 @pytest.mark.slow
 def test_particles_load_a_swayed_tank_as_graham_and_rodriguez_say():
-    """With 16 layers their waves swing 1.2 % too fast (see `verify water`), which moves loads near a natural frequency.
+    """Waves of a millimetre leave particles in their places, where h = 2 Δx makes them stiff; h = 3 Δx hardly does.
 
-    As they stand, amplitude is within 3 % and phase within 3 degrees up to 0.7 of the first. With that shift taken off
-    amplitude is within 3 % at all but 1.15, where what swings on is not told apart. Phase goes up to 3.5 degrees, at
-    1.5, where the load is a fifth of the water's inertia.
+    With 16 layers amplitude is within 3 % and phase within 3 degrees up to 1.35 of the first natural frequency; at 1.5
+    a fifth of the water's inertia is left, beside which 4.9 % and 5.3 degrees are as small. They fall with the spacing:
+    24 layers have 1.8 % and 3.2 degrees there, 0.6 % and 1.9 degrees elsewhere.
     """
     found = answers(swayed("sph", 16), 14.0)
     print(np.abs(found) - 1.0, np.degrees(np.angle(found)))
-    slow, beside = SHARES < 0.75, ~np.isclose(SHARES, 1.15)
-    assert np.abs(found[slow]) == pytest.approx(1.0, abs=0.03)
-    assert np.degrees(np.angle(found)) == pytest.approx(0.0, abs=4.0)
-    own, shifted = (_inertia(SHARES / (1.0 + by)) for by in (0.0, 0.012))
-    assert (np.abs(found) * own / shifted)[beside] == pytest.approx(1.0, abs=0.03)
-
-
-def _inertia(shares: np.ndarray) -> np.ndarray:
-    """Added mass in sway (kg/m) at these shares of the first natural frequency."""
-    return LIQUID.added_mass(shares * LIQUID.rates[0])[:, 0, 0]
+    whole = SHARES < 1.4
+    assert np.abs(found[whole]) == pytest.approx(1.0, abs=0.03)
+    assert np.degrees(np.angle(found[whole])) == pytest.approx(0.0, abs=3.5)
+    assert np.abs(found[~whole]) == pytest.approx(1.0, abs=0.08)
+    assert np.degrees(np.angle(found[~whole])) == pytest.approx(0.0, abs=7.0)
 
 
 def test_frozen_water_loads_a_tank_as_a_rigid_body():

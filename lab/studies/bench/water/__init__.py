@@ -4,7 +4,7 @@ Each study is a function `study(page, work, fast)` that adds a section to the pa
 JSON.
 """
 
-from lab.studies.bench.water import accuracy, front, levels, sizes, speed, vector
+from lab.studies.bench.water import accuracy, beside_air, front, levels, sizes, speed, vector
 from lab.studies.engine import Bench
 
 STUDIES = {
@@ -14,6 +14,7 @@ STUDIES = {
     "front": front.study,
     "sizes": sizes.study,
     "vector": vector.study,
+    "air": beside_air.study,
 }
 ABOUT = """Times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and of the
 ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for a million

@@ -99,9 +99,10 @@ def still(fast: bool) -> Found:
 
 @dataclass(frozen=True)
 class Between:
-    """The wave between water and a lighter fluid of a density (kg/m³)."""
+    """The wave between water and a lighter fluid (kg/m³); `smoothing` is h/Δx: with 2 a heavy one makes it stiff."""
 
     density: float
+    smoothing: float = 2.0
 
     @property
     def rate(self) -> float:
@@ -114,16 +115,21 @@ class Between:
         """Growth rate (1/s) with viscosity, see `between`."""
         return between(1000.0, self.density, VISCOSITY)
 
+    def made(self, rows: int) -> Scene:
+        """The wave on a level surface, with so many layers of each fluid."""
+        spacing, sound = 1.0 / rows, 10.0 * np.sqrt(G)
+        alpha = 8.0 * VISCOSITY / (self.smoothing * spacing * sound)
+        speed = STEEP / K * self.rate  # of the water at the surface
+        air = Air(self.density, sound, alpha)
+        water = Water(spacing, sound, smoothing=self.smoothing, alpha=alpha, speed=speed, air=air)
+        made = of_both(bearing(water, 1.0), box(1.0, 2.0), 1.0)
+        set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
+        return made
+
     def waved(self, rows: int) -> Swing:
         """The oscillation of the mode's momentum, from a level surface, with so many layers of each fluid."""
-        spacing, sound = 1.0 / rows, 10.0 * np.sqrt(G)
-        alpha = 8.0 * VISCOSITY / (2.0 * spacing * sound)
-        speed = STEEP / K * self.rate  # of the water at the surface
-        water = bearing(Water(spacing, sound, alpha=alpha, speed=speed, air=Air(self.density, sound, alpha)), 1.0)
-        made = of_both(water, box(1.0, 2.0), 1.0)
-        set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
         times, found = np.arange(1, round(PERIODS * A_PERIOD)) * 2.0 * np.pi / (self.rate * A_PERIOD), []
-        with simulated(made) as run:
+        with simulated(self.made(rows)) as run:
             for time in looks(run, times):
                 place, velocity, mass = kept(run)
                 shape = mode(place)
@@ -144,7 +150,7 @@ def mode(place: np.ndarray) -> np.ndarray:
 def waves(fast: bool) -> Found:
     """Waves of water under air, and under a fluid of half its density."""
     rows, lines, notes = WAVED[:1] if fast else WAVED, [], []
-    for fluid in (Between(1.2), *(() if fast else (Between(500.0),))):
+    for fluid in (Between(1.2), *(() if fast else (Between(500.0, 3.0),))):
         swings = [fluid.waved(count) for count in rows]
         exact = fluid.viscous
         errors = [one.rate / exact.imag - 1.0 for one in swings]

@@ -21,6 +21,7 @@ from lab.studies.verify.water.scenes import (
     swing,
 )
 from solvers.fluid.given import Water
+from solvers.scene import Scene
 
 SECTION = "Water: waves"
 DEPTH = WIDTH = 1.0  # m: the first mode has k H = π, a wavelength of two depths
@@ -104,13 +105,17 @@ def mode(place: np.ndarray) -> np.ndarray:
     return np.stack(along, axis=1) / np.sinh(K * DEPTH)
 
 
-def waved(rows: int) -> Wave:
-    """The wave with so many layers of particles, from a level surface."""
+def made(rows: int) -> Scene:
+    """The wave on a level surface, with so many layers of particles."""
     spacing = DEPTH / rows
     water = Water(spacing, SOUND, alpha=8.0 * VISCOSITY / (2.0 * spacing * SOUND))
-    outline = box(WIDTH, 1.3 * DEPTH)
+    return resting(water, box(WIDTH, 1.3 * DEPTH), DEPTH, lambda place: STEEP / K * RATE * mode(place))
+
+
+def waved(rows: int) -> Wave:
+    """The wave with so many layers of particles, from a level surface."""
     times, found = np.arange(1, round(PERIODS * A_PERIOD)) * 2.0 * np.pi / (RATE * A_PERIOD), []
-    with simulated(resting(water, outline, DEPTH, lambda place: STEEP / K * RATE * mode(place))) as run:
+    with simulated(made(rows)) as run:
         for time in looks(run, times):
             place, velocity = seen(run)
             shape = mode(place)
