@@ -167,7 +167,7 @@ def merge_repeats(wanted: bool) -> None:
     """
     config = ti.lang.impl.current_cfg()
     config.opt_level = int(wanted and not compiling.quick())
-    config.advanced_optimization = wanted or not compiling.quick()
+    config.advanced_optimization = not compiling.quick()
 
 
 def running_arch() -> str:
