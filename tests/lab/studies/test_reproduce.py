@@ -54,7 +54,8 @@ def outcome(setting=None, **measures) -> Outcome:
 
 
 EXPERIMENTS = {name: one for part in reports() for name, one in experiments(part).items()}
-FINE = ("impact-air-fine", "impact-air-finest", "prismatic-cost")  # the scenes of others, with so many particles that they take seconds
+# The scenes of others, with so many particles that they take seconds
+FINE = ("impact-air-fine", "impact-air-finest", "prismatic-cost")
 
 
 @pytest.mark.usefixtures("roughly_packed")
