@@ -73,7 +73,7 @@ class WaterMatter(Matter):
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
         self.long = pace = Pace(arrays.under("water"), self.lists, scene.water_pace)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
-        lean = Lean(arrays, medium, behind.straight, dummy)
+        lean = Lean(arrays, medium, behind, dummy, tank)
         self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.stiffening = Stiffening(arrays, p, self.constants, scene, setting.stretch)

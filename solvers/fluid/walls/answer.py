@@ -40,7 +40,7 @@ def answer_at_rest(scene, behind: Behind) -> np.ndarray:
 def _answer(
     water: Water, drops: np.ndarray, points: np.ndarray, volumes: np.ndarray, straight: np.ndarray
 ) -> np.ndarray:
-    """A (3, 3) of the dummies of a tank at `points` (n, 2) m, with `straight_of` them, per metre of slab."""
+    """A (3, 3) of the dummies of a tank at `points` (n, 2) m, with `straight` of them, per metre of slab."""
     from scipy.spatial import cKDTree  # slow to import
 
     pairs = cKDTree(points).sparse_distance_matrix(cKDTree(drops[:, [Y, Z]]), water.reach, output_type="ndarray")

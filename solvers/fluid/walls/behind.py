@@ -7,8 +7,7 @@ import numpy as np
 from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.gauges import probes
-from solvers.fluid.walls.layers import edge_of, faces, firm, layers
-from solvers.fluid.walls.lean import straight_of
+from solvers.fluid.walls.layers import edge_of, faces, firm, layers, straight
 from solvers.space.axes import NAMES
 from solvers.tank.tank import Tank
 
@@ -19,7 +18,7 @@ class Behind:
     """Dummies and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
 
     `along` (n, 2) are unit vectors along the faces before them (`faces`), zero of probes; `straight` (n, 2) are those
-    of straight faces alone (`straight_of`).
+    of straight faces alone (`straight`).
     An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
     numbers, `open` what dummies leave of their kernels. Gauges are in the first tank that has water. `fills` are the
     numbers of particles in each tank; none stands behind a dry one.
@@ -36,10 +35,9 @@ class Behind:
             points, volumes, depths = _round(water, tanks[number])
             self._add(points, volumes, edge_of(points, tanks[number].outline), number)
             along = faces(points, tanks[number].outline)
-            straight = straight_of(points, along, tanks[number].outline, water)
-            self.along, self.straight = (
-                np.concatenate(pair) for pair in ((self.along, along), (self.straight, straight))
-            )
+            self.along = np.concatenate([self.along, along])
+            away = straight(points, along, tanks[number].outline, water.reach)
+            self.straight = np.concatenate([self.straight, away])
             hold = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
             self.firm = np.append(self.firm, hold)
         if not len(self.points):

@@ -37,7 +37,7 @@ class Bodies:
 
     def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int, lanes: int):
         self.count, self.lanes, self.worlds = len(parts), lanes, worlds
-        self.solids = Solids(parts, water, lanes)
+        self.solids, self.reach = Solids(parts, water, lanes), water.reach
         self.rows = len(self.solids.places)
         self.sight = Sight(arrays, parts, water, tank, worlds)
         self.farthest = [max(float(np.hypot(*point)) for point in part.points) for part in parts]

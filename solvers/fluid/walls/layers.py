@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 NEARER = 0.25  # spacings by which a dummy may be nearer to a wall than its layer is
+FAR = 1.5  # kernels' reaches from a corner: there no dummy sees water that another wall ends
 FIRM = 1  # the layer that holds what has come through the face; the layer before it has gaps there
 
 
@@ -75,12 +76,29 @@ def faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
     They are square to the shortest line from there to the point, at a corner as well.
     """
+    away = behind(points, corners)
+    return np.stack([-away[:, 1], away[:, 0]], axis=1) / np.linalg.norm(away, axis=1)[:, None]
+
+
+def behind(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """From where a polygon, or a line to and fro, (m, 2) m is nearest to points (n, 2) m, to these: (n, 2) m."""
     edges = np.roll(corners, -1, axis=0) - corners
     nearest = edge_of(points, corners)
     along, away = edges[nearest], points - corners[nearest]
     share = (away * along).sum(axis=1) / (along**2).sum(axis=1)
-    behind = away - np.clip(share, 0.0, 1.0)[:, None] * along
-    return np.stack([-behind[:, 1], behind[:, 0]], axis=1) / np.linalg.norm(behind, axis=1)[:, None]
+    return away - np.clip(share, 0.0, 1.0)[:, None] * along
+
+
+def deep(points: np.ndarray, along: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """How far (n,) m the points are off the face `along` (n, 2) before them: its right is positive."""
+    away = behind(points, corners)
+    return away[:, 0] * along[:, 1] - away[:, 1] * along[:, 0]
+
+
+def straight(points: np.ndarray, along: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
+    """`along` (n, 2) of dummies at `points` (n, 2) m, zero near the `corners` (m, 2) m; `reach` (m) is the kernel's."""
+    away = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1)
+    return along * (away > FAR * reach)[:, None]
 
 
 def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:

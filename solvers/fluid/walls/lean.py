@@ -3,12 +3,15 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.given import Water
 from solvers.fluid.lists import Medium
+from solvers.fluid.walls.behind import Behind
+from solvers.fluid.walls.layers import FAR, deep
+from solvers.fluid.walls.sight import COSINE, SINE, Y, Z
+from solvers.fluid.walls.solids import sides_of
 from solvers.machine.state import Axis, State, padded
+from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
-
-FAR = 1.5  # kernels' reaches from a corner: there no dummy sees water that another wall ends
+from solvers.tank.tank import Tank
 
 
 @ti.data_oriented
@@ -21,42 +24,89 @@ class Lean:
     for adjoint pairs see Bonet & Lok 1999, sec. 3). Without it what slides is taken from waves: a standing wave of 20
     layers decays by 4.5 % faster.
 
-    Limits: only away from corners (FAR). There the water leans because another wall ends it, and the pushes of both
-    walls bear each other; with part of them taken off, the pressure of 40 layers at rest between chamfers was off by
-    2 % of ρ g H. So a surface within 1.5 reaches of a corner, a wall of short edges, parts in the water, water beside
-    air and full tanks, which have no `Closing`, are as they were.
+    Limits: only away from corners, ends and other walls (FAR). There the water leans because another wall ends it, and
+    the pushes of both walls bear each other; with part of them taken off, the pressure of 40 layers at rest between
+    chamfers was off by 2 % of ρ g H, and a piston's waves were lower by a twentieth. So a surface within 1.5 reaches of
+    a corner, a wall of short edges, water beside air and full tanks, which have no `Closing`, are as they were.
     """
 
-    def __init__(self, arrays: State, medium: Medium, straight: np.ndarray, slots: np.ndarray):
-        """`straight` (n, 2) are those of `straight_of` for the points at the lanes `slots` of the walls."""
+    def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray, tank: Tank):
+        """`slots` are where the points of `behind` are among the lanes of the walls."""
         self.particles, self.constants = p, c = medium.particles, medium.constants
+        self.bodies = bodies = medium.lists.bodies
         self.acts = p.dry > 0 and not (c.full or c.two)
         if self.acts:
-            rows = np.zeros((p.walls * p.lanes, 2))
-            rows[slots] = straight
             own, each = arrays.under("water.lean"), (Axis("block", p.worlds * p.stride), Axis("lane", p.lanes))
+            rows = self._rows(behind.straight, bodies.solids.straight, slots)
             self.along = [
-                own.holding(name, padded(rows[:, a].reshape(-1, p.lanes), p.dry), "row lane")
+                own.holding(name, padded(rows[..., a], p.dry), "row lane")
                 for a, name in enumerate(named("along", p.axes))
             ]
             self.lean = own.wide(each, *named("lean", p.axes), kept=False)
+            if bodies.count:
+                off = self._rows(deep(behind.points, behind.along, tank.outline), bodies.solids.deep, slots)
+                self.deep = own.holding("deep", padded(off, p.dry), "row lane")
+                sides = [*bodies.solids.sides, sides_of(tank.outline)]
+                self.ends = np.cumsum([0, *(len(of_one) for of_one in sides)]).tolist()
+                self.sides = own.holding("sides", np.concatenate(sides), "side number", own.exact)
+                self.near = own.holding("near", np.array([FAR * bodies.reach]), "length", p.real)
+
+    def _rows(self, of_tank: np.ndarray, of_bodies: np.ndarray, slots: np.ndarray) -> np.ndarray:
+        """Values of the points of tanks, at their `slots`, and of those of bodies, by rows and lanes."""
+        lanes = self.particles.lanes
+        rows = np.zeros(((self.particles.walls - self.bodies.rows) * lanes, *of_tank.shape[1:]))
+        rows[slots] = of_tank
+        return np.concatenate([rows.reshape(-1, lanes, *of_tank.shape[1:]), of_bodies])
 
     @ti.func
     def note(self, b, seen, steep: ti.template()):
         """Store t (t·Σ V (−W'/r)(r_f − r_w))/Σ V W of a block of dummies, from Σ V W `seen` and that sum, `steep`."""
         p = self.particles
         along = [p.load(self.along[a], b % p.stride - p.wet) for a in ti.static(range(p.axes))]
+        if ti.static(self.bodies.moving):
+            self.bodies.turn(b, along, AT_START)
         leans = dot(along, steep) / ti.max(seen, 1e-30)
+        if ti.static(self.bodies.count > 0):
+            leans *= self.clear(b, along)
         for a in ti.static(range(p.axes)):
             p.store(self.lean[a], b, leans * along[a])
+
+    @ti.func
+    def clear(self, b, along: ti.template()):
+        """1 for the dummies of a block that are away from all walls but their own as the step begins; else 0."""
+        p, w, row = self.particles, b // self.particles.stride, self.bodies.row(b)
+        clear, deep = p.ones(), p.load(self.deep, b % p.stride - p.wet)
+        to_face = [0.0 - deep * along[1], deep * along[0]]
+        for k in ti.static(range(self.bodies.count)):
+            if row < 0 or self.bodies.owner[ti.max(row, 0)] != k:
+                pose = [self.bodies.pose[w, k, n] for n in ti.static((Y, Z, COSINE, SINE))]
+                clear *= self.clear_of(b, k, pose, to_face)
+        if row >= 0:
+            clear *= self.clear_of(b, self.bodies.count, [0.0, 0.0, 1.0, 0.0], to_face)
+        return clear
+
+    @ti.func
+    def clear_of(self, b, k: ti.template(), pose: ti.template(), to_face: ti.template()):
+        """1 for the dummies of a block that are away from the part k at a pose (y, z, cosine, sine), else 0.
+
+        The tank follows the parts. Distances are from the face, and from there on to the dummy: so is the one from the
+        corner between two walls.
+        """
+        p, clear = self.particles, self.particles.ones()
+        o_y, o_z, cos, sin = pose
+        deep = dot(to_face, to_face)
+        for side in range(self.ends[k], self.ends[k + 1]):
+            y, z, way_y, way_z = [self.sides[side, n] for n in ti.static(range(4))]
+            at = [o_y + cos * y - sin * z, o_z + sin * y + cos * z]
+            way = [ti.cast(cos * way_y - sin * way_z, p.real), ti.cast(sin * way_y + cos * way_z, p.real)]
+            off = [p.offset(b, ti.cast(at[a], p.where), a) + to_face[a] for a in ti.static(range(p.axes))]
+            share = ti.max(0.0, ti.min(1.0, dot(off, way) / dot(way, way)))
+            for a in ti.static(range(p.axes)):
+                off[a] = off[a] - share * way[a]
+            clear = ti.select(dot(off, off) + deep > self.near[0] * self.near[0], clear, p.zeros())
+        return clear
 
     @ti.func
     def given(self, jb, lane, value, axis: ti.template()):
         """What is to be taken from (−W'/r)(r_i − r_w) along an axis, for particles at which W is `value`."""
         return value * self.lean[axis][jb, lane]
-
-
-def straight_of(points: np.ndarray, along: np.ndarray, corners: np.ndarray, water: Water) -> np.ndarray:
-    """`along` (n, 2) of the dummies at `points` (n, 2) m, zero near the `corners` (m, 2) m of their tank's outline."""
-    away = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1)
-    return along * (away > FAR * water.reach)[:, None]

@@ -63,10 +63,11 @@ def test_water_tank_and_bodies_share_momentum_and_energy():
 
 def test_bodies_in_still_water_bear_its_pressure():
     """A square 8 spacings wide bears its own weight of water (Archimedes), to 4 %, a plate between two levels their
-    difference, and no water passes it. The load on the tank and the bodies is the weight of the water.
+    difference, and no water passes it. The load on the tank and the bodies is the weight of the water, which rests.
     """
     run = Simulation(stirred(1e-9), threads=1, arch="cpu")
     run.observe()
+    start = run.snapshot()["water_place"][0]
     run.advance(100)
     run.observe()
     beyond = run.snapshot()["water_place"][0, :, 0] > FLAP[0][0]
@@ -74,6 +75,7 @@ def test_bodies_in_still_water_bear_its_pressure():
     rows, mass, place = run.observe(), momentum(run)[1], run.snapshot()["water_place"][0]
     run.close()
     np.testing.assert_array_equal(place[:, 0] > FLAP[0][0], beyond)
+    assert np.linalg.norm(place - start, axis=1).max() < SPACING
     buoyancy = 1000.0 * GRAVITY * 0.16**2
     np.testing.assert_allclose(rows["part_force"][0, 0, :2], [0.0, buoyancy], atol=0.04 * buoyancy)
     push = 0.5 * 1000.0 * GRAVITY * (DEPTH**2 - LOW**2)
@@ -83,7 +85,10 @@ def test_bodies_in_still_water_bear_its_pressure():
 
 @pytest.mark.slow
 def test_a_plate_is_as_tight_as_a_wall():
-    """Water on one side of a plate moves as in a tank that ends there, whatever stands on the other; to rounding."""
+    """Water on one side of a plate moves as in a tank that ends there, whatever stands on the other.
+
+    To 1e-4 of a spacing: dummies slide along the plate to its very end, but askew behind the corner of a tank.
+    """
     plate = Body(((0.0, 0.0), (0.0, HEIGHT)))
     drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
     left, low = drops[0, :, 0] < 0.0, 0.1
@@ -98,7 +103,7 @@ def test_a_plate_is_as_tight_as_a_wall():
     for run in runs:
         run.advance(200)
         places.append(run.snapshot()["water_place"][0])
-    np.testing.assert_allclose(places[0][~beyond], places[1], atol=1e-9 * SPACING)
+    np.testing.assert_allclose(places[0][~beyond], places[1], atol=1e-4 * SPACING)
     assert places[0][beyond, 0].min() > 0.25 * SPACING
     runs[0].observe()
     runs[0].advance(100)
