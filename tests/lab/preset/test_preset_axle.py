@@ -33,7 +33,7 @@ period = "2 s"
 [run]
 duration = "3 s"
 """
-WATER = {"depth": "92 mm"}
+WATER, LATE = {"depth": "92 mm"}, {"sound_speed": "real", "stiff_from": "1 s"}
 SHIP = {"breadth": "2 m", "height": "1 m", "draught": "0.4 m", "gravity_height": "0.3 m", "gyradius": "0.5 m"}
 RECORD = "t; place; other\n0; 0; 5\n1; 10; 5\n2; 0; 5\n3; -10; 5\n4; 0; 5\n"
 
@@ -97,6 +97,7 @@ def test_a_measured_series_is_read_where_it_is(tmp_path, monkeypatch):
         ({"axle__slide__amplitude": False}, "axle.slide.amplitude: missing"),
         ({"water": WATER, "axle__heel": "5 deg"}, "axle.release: what is in the tank bears no sudden heel; give at"),
         ({"run__duration": False}, "run.duration: missing"),
+        ({"water": WATER, "air": LATE}, "air.stiff_from: a tank on an axle answers to its load in steps of one length"),
     ],
 )
 def test_what_cannot_be_is_told_by_its_key(changes, says):
