@@ -68,7 +68,8 @@ class Continuity:
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
             apart = lists.apart(b, own, origin, j, AT_MIDDLE)
-            weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
+            t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
+            weight = lists.volume(b, j, apart, AT_MIDDLE) * c.kernel.slope(t)
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
             other = gas - p.gas_at(jb, lane)
             if ti.static(c.two):
@@ -99,11 +100,12 @@ class Continuity:
                 jb, lane = lists.block_of(j), lists.lane_of(j)
                 apart = lists.apart(b, own, origin, j, AT_MIDDLE)
                 t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-                weight = p.volume[jb, lane] * c.kernel.slope(t)
+                volume = lists.volume(b, j, apart, AT_MIDDLE)
+                weight = volume * c.kernel.slope(t)
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
                 if ti.static(self.closes):
-                    closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
+                    closed += (volume * p.rate[jb, lane]) * c.kernel.value(t)
                 if ti.static(self.sliding.acts):
                     slid += weight * self.sliding.given(jb, lane, apart)
             closed *= c.get("value")

@@ -155,14 +155,14 @@ class Forces:
             apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            weight = p.volume[jb, lane] * c.kernel.slope(t)
+            weight = lists.volume(b, j, apart, AT_START) * c.kernel.slope(t)
             if ti.static(c.shifting.acts):
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
                 if ti.static(not (c.full or c.two)):
                     deeper = p.span_before[jb, lane] - span
-                    least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
+                    least = ti.min(least, ti.select(weight > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
                     for a in ti.static(range(p.axes)):
                         inwards[a] = inwards[a] - (deeper * weight) * apart[a]
             along = (pressure + p.pressure[jb, lane]) * weight

@@ -252,19 +252,27 @@ class Lists:
 
     @ti.func
     def apart(self, b, own: ti.template(), origin: ti.template(), entry, part: ti.template()):
-        """The places of a block b, `own` (m) from `origin`, less that of an entry's particle, at a part of the step.
-
-        Particles that a plate hides from each other are huge distances apart.
-        """
+        """The places of a block b, `own` (m) from `origin`, less that of an entry's particle."""
         p, jb, lane = self.particles, self.block_of(entry), self.lane_of(entry)
-        found = [
+        return [
             own[a] - ti.cast(p.place[a][jb, lane] + self.seen(entry, a) - origin[a], p.real)
             for a in ti.static(range(p.axes))
         ]
+
+    @ti.func
+    def volume(self, b, entry, apart: ti.template(), part: ti.template()):
+        """The volume (m²) of an entry's particle, for a block b the part of it that plates in the water let it see."""
+        return self.particles.volume[self.block_of(entry), self.lane_of(entry)] * self.sees(b, entry, apart, part)
+
+    @ti.func
+    def sees(self, b, entry, apart: ti.template(), part: ti.template()):
+        """The share of an entry's particle that a block b sees past the plates, at a part of the step."""
+        p, jb, lane = self.particles, self.block_of(entry), self.lane_of(entry)
         if ti.static(len(self.bodies.sight.plates) > 0):
             place = [ti.cast(p.place[a][jb, lane] + self.seen(entry, a), p.real) for a in ti.static(range(p.axes))]
-            found[0] += self.bodies.sight.out_of_sight(b, jb, place, found, part)
-        return found
+            return self.bodies.sight.share(b, jb, place, apart, part)
+        else:
+            return ti.cast(1.0, p.real)
 
     @ti.func
     def seen(self, entry, axis: ti.template()):

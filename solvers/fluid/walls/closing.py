@@ -70,7 +70,7 @@ class Closing:
             jb, lane = lists.block_of(j), lists.lane_of(j)
             apart = lists.apart(b, own, origin, j, AT_MIDDLE)
             t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-            volume = p.volume[jb, lane]
+            volume = lists.volume(b, j, apart, AT_MIDDLE)
             if ti.static(p.two):
                 volume *= 1.0 - p.gas[jb, lane]
             weight, slope = volume * c.kernel.value(t), volume * c.kernel.slope(t)

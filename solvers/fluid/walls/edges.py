@@ -73,7 +73,7 @@ class Edges:
             apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0)
-            weight = c.kernel.slope(t)
+            weight, itself = c.kernel.slope(t), lists.volume(b, j, apart, AT_START)
             gas = p.gas_at(jb, lane)
             push = c.clipped(p.pressure[jb, lane], gas)
             if ti.static(c.pressed):
@@ -84,11 +84,11 @@ class Edges:
                 along = (1.0 - gas) * pressure + gas * p.pressure[jb, lane] + push
                 spring *= 1.0 + gas * p.excess[jb, lane]
                 along += (gas * (1.0 + p.excess[jb, lane]) * c.get("air_density")) * dot(felt, apart)
-            along = p.volume[jb, lane] * (along * weight + spring)
+            along = itself * (along * weight + spring)
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
             if ti.static(self.walls.lean.acts):
-                by_wall = pressure * (p.volume[jb, lane] * c.kernel.value(t))
+                by_wall = pressure * (itself * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
                     force[a] += by_wall * p.load(self.walls.lean.lean[a], b)
         for a in ti.static(range(p.axes)):

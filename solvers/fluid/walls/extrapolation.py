@@ -63,10 +63,11 @@ class Extrapolation:
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
             apart = self.lists.apart(b, own, origin, j, AT_START)
             t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-            weight, volume = c.kernel.value(t), p.volume[jb, lane]
+            sees, volume = self.lists.sees(b, j, apart, AT_START), p.volume[jb, lane]
+            weight = sees * c.kernel.value(t)
             if ti.static(self.lean.acts):
                 for a in ti.static(range(p.axes)):
-                    steep[a] = steep[a] - (volume * c.kernel.slope(t)) * apart[a]
+                    steep[a] = steep[a] - (sees * (volume * c.kernel.slope(t))) * apart[a]
             massive = weight * p.mass[jb, lane]
             if ti.static(self.sticks):
                 for a in ti.static(range(p.axes)):

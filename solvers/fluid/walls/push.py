@@ -50,7 +50,8 @@ class WallPush:
             apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            weight = p.volume[jb, lane] * c.kernel.slope(t)
+            volume = lists.volume(b, j, apart, AT_START)
+            weight = volume * c.kernel.slope(t)
             if ti.static(c.shifting.acts):
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
@@ -61,7 +62,7 @@ class WallPush:
                     off = weight * apart[a]
                     fill[a] += (1.0 - gas) * off if ti.static(c.two) else off  # walls are no part of the air
             along = self.wall_pressure(jb, lane, gas, pressure) + c.clipped(pressure, gas)
-            spring = p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
+            spring = volume * c.hardness(square, p.firm[jb, lane], gas)
             if ti.static(c.two):
                 spring *= squeezed
                 along = along - dot(weighs, apart)
@@ -74,7 +75,7 @@ class WallPush:
             for a in ti.static(range(p.axes)):
                 own_push[a] += more * apart[a]
             if ti.static(self.walls.lean.acts):
-                by_wall = p.volume[jb, lane] * p.pressure[jb, lane] * c.kernel.value(t)
+                by_wall = volume * p.pressure[jb, lane] * c.kernel.value(t)
                 for a in ti.static(range(p.axes)):
                     off = self.walls.lean.given(jb, lane, by_wall, a)
                     wall[a] = wall[a] - off
