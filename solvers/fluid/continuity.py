@@ -67,9 +67,9 @@ class Continuity:
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(b, own, origin, j, AT_MIDDLE)
+            apart = lists.apart(own, origin, j)
             t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-            weight = lists.volume(b, j, apart, AT_MIDDLE) * c.kernel.slope(t)
+            weight = p.volume[jb, lane] * lists.sees(b, j, apart, AT_MIDDLE) * c.kernel.slope(t)
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
             other = gas - p.gas_at(jb, lane)
             if ti.static(c.two):
@@ -98,9 +98,9 @@ class Continuity:
             for k in range(lists.beside.first[u, listed * pieces], lists.beside.first[u, (listed + 1) * pieces]):
                 j = lists.beside.slots[u, k]
                 jb, lane = lists.block_of(j), lists.lane_of(j)
-                apart = lists.apart(b, own, origin, j, AT_MIDDLE)
+                apart = lists.apart(own, origin, j)
                 t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-                volume = lists.volume(b, j, apart, AT_MIDDLE)
+                volume = p.volume[jb, lane] * lists.sees(b, j, apart, AT_MIDDLE)
                 weight = volume * c.kernel.slope(t)
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)

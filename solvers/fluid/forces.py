@@ -152,10 +152,10 @@ class Forces:
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(b, own, origin, j, AT_START)
+            apart = lists.apart(own, origin, j)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            weight = lists.volume(b, j, apart, AT_START) * c.kernel.slope(t)
+            weight = p.volume[jb, lane] * lists.sees(b, j, apart, AT_START) * c.kernel.slope(t)
             if ti.static(c.shifting.acts):
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):

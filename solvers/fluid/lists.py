@@ -217,12 +217,10 @@ class Lists:
     @ti.func
     def at(self, w, key, walls: ti.template()):
         """First slot of a key."""
-        slot = 0
-        if ti.static(walls):  # noqa: SIM108 (else both are compiled)
-            slot = self.wall_first[key]
+        if ti.static(walls):
+            return self.wall_first[key]
         else:
-            slot = self.order.first[w, key]
-        return slot
+            return self.order.first[w, key]
 
     @ti.func
     def shift(self, image, axis: ti.template()):
@@ -245,24 +243,19 @@ class Lists:
     @ti.func
     def slot_of(self, entry):
         """The slot of an entry."""
-        slot = entry
         if ti.static(len(self.images) > 1):
-            slot = entry & ti.static((1 << PLACES) - 1)
-        return slot
+            return entry & ti.static((1 << PLACES) - 1)
+        else:
+            return entry
 
     @ti.func
-    def apart(self, b, own: ti.template(), origin: ti.template(), entry, part: ti.template()):
-        """The places of a block b, `own` (m) from `origin`, less that of an entry's particle."""
+    def apart(self, own: ti.template(), origin: ti.template(), entry):
+        """The places of a block, `own` (m) from `origin`, less that of an entry's particle."""
         p, jb, lane = self.particles, self.block_of(entry), self.lane_of(entry)
         return [
             own[a] - ti.cast(p.place[a][jb, lane] + self.seen(entry, a) - origin[a], p.real)
             for a in ti.static(range(p.axes))
         ]
-
-    @ti.func
-    def volume(self, b, entry, apart: ti.template(), part: ti.template()):
-        """The volume (m²) of an entry's particle, for a block b the part of it that plates in the water let it see."""
-        return self.particles.volume[self.block_of(entry), self.lane_of(entry)] * self.sees(b, entry, apart, part)
 
     @ti.func
     def sees(self, b, entry, apart: ti.template(), part: ti.template()):
@@ -277,10 +270,10 @@ class Lists:
     @ti.func
     def seen(self, entry, axis: ti.template()):
         """By how much (m) the image of an entry is displaced along an axis."""
-        shift = ti.cast(0.0, self.particles.where)
         if ti.static(len(self.images) > 1):
-            shift = self.shift(entry >> PLACES, axis)
-        return shift
+            return self.shift(entry >> PLACES, axis)
+        else:
+            return ti.cast(0.0, self.particles.where)
 
     @ti.func
     def box(self, b):

@@ -68,9 +68,9 @@ class Closing:
         for k in range(begin, end):
             j = lists.facing.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(b, own, origin, j, AT_MIDDLE)
+            apart = lists.apart(own, origin, j)
             t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-            volume = lists.volume(b, j, apart, AT_MIDDLE)
+            volume = p.volume[jb, lane] * lists.sees(b, j, apart, AT_MIDDLE)
             if ti.static(p.two):
                 volume *= 1.0 - p.gas[jb, lane]
             weight, slope = volume * c.kernel.value(t), volume * c.kernel.slope(t)

@@ -70,10 +70,10 @@ class Edges:
         for k in range(begin, end):
             j = lists.facing.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(b, own, origin, j, AT_START)
+            apart = lists.apart(own, origin, j)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0)
-            weight, itself = c.kernel.slope(t), lists.volume(b, j, apart, AT_START)
+            weight, itself = c.kernel.slope(t), p.volume[jb, lane] * lists.sees(b, j, apart, AT_START)
             gas = p.gas_at(jb, lane)
             push = c.clipped(p.pressure[jb, lane], gas)
             if ti.static(c.pressed):

@@ -61,7 +61,7 @@ class Extrapolation:
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
-            apart = self.lists.apart(b, own, origin, j, AT_START)
+            apart = self.lists.apart(own, origin, j)
             t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
             sees, volume = self.lists.sees(b, j, apart, AT_START), p.volume[jb, lane]
             weight = sees * c.kernel.value(t)

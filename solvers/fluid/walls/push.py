@@ -47,10 +47,10 @@ class WallPush:
         for k in range(ends[0], ends[1]):
             j = lists.beside.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(b, own, origin, j, AT_START)
+            apart = lists.apart(own, origin, j)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            volume = lists.volume(b, j, apart, AT_START)
+            volume = p.volume[jb, lane] * lists.sees(b, j, apart, AT_START)
             weight = volume * c.kernel.slope(t)
             if ti.static(c.shifting.acts):
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
