@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from solvers.machine import runtime
+from solvers.machine.state import Axis, State
 from solvers.simulation import Simulation
 
 ROUNDING = """stand in for a processor that rounds otherwise, in this process alone: strict compiles without fast-math;
@@ -57,6 +58,17 @@ def own_cache(tmp_path_factory):
     """Tests neither read nor fill the cache of the person who runs them; workers side by side share one."""
     base = tmp_path_factory.getbasetemp()
     os.environ["CARGOLAB_CACHE"] = str((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache")
+
+
+@pytest.fixture(scope="module")
+def one_start():
+    """One start of Taichi for a whole file, whose small kernels take less time to compile than a start takes."""
+    runtime.initialise(1)
+    held = State()
+    held.reals((Axis("one", 1),), "held")
+    held.finish()
+    yield
+    held.release()
 
 
 def pytest_collection_finish():

@@ -128,6 +128,8 @@ def test_ore_is_judged_by_its_unevenness(tmp_path):
 
 
 def test_without_the_library_of_pdf_the_remedy_is_said(run, monkeypatch):
+    monkeypatch.setattr(file, "_data", lambda _: {})  # of the page, which takes long
+    monkeypatch.setattr(file, "render_text", lambda *_, **__: "")
     monkeypatch.setitem(__import__("sys").modules, "weasyprint", None)
     with pytest.raises(LabError, match=r"--pdf: needs WeasyPrint .* print report.html"):
         file.write_report(run, pdf=True)

@@ -37,29 +37,12 @@ def hertz() -> np.ndarray:
     return 4.0 / 3.0 * modulus * size * DEEP**1.5
 
 
-@pytest.fixture(scope="module")
-def standing(tmp_path_factory):
-    """A recording of the column, in the last frame without the grain by itself."""
-    folder = tmp_path_factory.mktemp("standing")
-    with recorder(folder, radius=np.full((1, 4), RADIUS)) as writer:
-        for now, lost in ((0.0, False), (1.0, True)):
-            writer.sample(sample(now))
-            writer.frame(frame(now, position=column(lost)))
-    return folder
-
-
-@pytest.mark.parametrize("row", [0, 1])
-def test_forces_and_pressures_of_a_column_are_those_of_hertz(standing, row):
-    with open_footage(standing) as footage:
-        (bed,) = choose_beds(footage)
-        found, place = bed.pressing(row), bed.position(row)
-    force = dict(zip(map(tuple, np.sort(found.grains, axis=1)), np.hypot(*found.force.T), strict=True))
-    asked = dict(zip([(NOBODY, 0), (0, 1), (1, 2)], hertz(), strict=True))
-    assert force == pytest.approx(asked, rel=1e-3)  # places in 32 bits
-    pressed = pressures(found, place, bed.radius)
-    low, middle, top = hertz()
-    of_column = np.array([low + middle, middle + top, top]) / (4.0 * np.pi * RADIUS**2)
-    assert pressed == pytest.approx([*of_column, 0.0], rel=2e-3)  # arms are shorter by half an overlap
+def test_grains_that_lie_in_each_other_are_refused_in_one_sentence(tmp_path):
+    with recorder(tmp_path, radius=np.full((1, 4), RADIUS)) as writer:
+        writer.sample(sample(0.0))
+        writer.frame(frame(0.0, position=np.full((1, 4, 2), 0.02)))
+    with open_footage(tmp_path) as footage, pytest.raises(LabError, match=r"at 0 s: grains lie in each other\.$"):
+        choose_beds(footage)[0].pressing(0)
 
 
 def test_forces_found_again_are_those_of_the_run():
@@ -88,20 +71,44 @@ def test_forces_found_again_are_those_of_the_run():
         assert told.get(pair, 0.0) == pytest.approx(float(found.get(pair, 0.0)), abs=2e-3 * largest, rel=1e-2)
 
 
+@pytest.fixture(scope="module")
+def standing(tmp_path_factory):
+    """Footage of the column, in its last frame without the grain by itself. Those before it have their own kernels."""
+    folder = tmp_path_factory.mktemp("standing")
+    with recorder(folder, radius=np.full((1, 4), RADIUS)) as writer:
+        for now, lost in ((0.0, False), (1.0, True)):
+            writer.sample(sample(now))
+            writer.frame(frame(now, position=column(lost)))
+    with open_footage(folder) as footage:
+        yield footage
+
+
+@pytest.mark.parametrize("row", [0, 1])
+def test_forces_and_pressures_of_a_column_are_those_of_hertz(standing, row):
+    (bed,) = choose_beds(standing)
+    found, place = bed.pressing(row), bed.position(row)
+    force = dict(zip(map(tuple, np.sort(found.grains, axis=1)), np.hypot(*found.force.T), strict=True))
+    asked = dict(zip([(NOBODY, 0), (0, 1), (1, 2)], hertz(), strict=True))
+    assert force == pytest.approx(asked, rel=1e-3)  # places in 32 bits
+    pressed = pressures(found, place, bed.radius)
+    low, middle, top = hertz()
+    of_column = np.array([low + middle, middle + top, top]) / (4.0 * np.pi * RADIUS**2)
+    assert pressed == pytest.approx([*of_column, 0.0], rel=2e-3)  # arms are shorter by half an overlap
+
+
 def test_chains_are_as_thick_as_their_forces_and_reach_to_the_contacts(standing):
     """Painted over nothing, the line from a grain to its contact covers its length times its thickness."""
-    with open_footage(standing) as footage:
-        (bed,) = choose_beds(footage)
-        found, place = bed.pressing(0), bed.position(0)
-        _, arms, thickness, typical = chains(found, place, typical=float(hertz().max()))
-        assert typical == pytest.approx(hertz().max())
-        order = np.argsort(np.hypot(*found.force.T))[::-1]
-        assert thickness[: len(order)][order] == pytest.approx(hertz() / hertz().max(), rel=1e-3)
-        assert np.abs(arms[:, 0]).max() < 1e-9 and np.hypot(*arms.T) == pytest.approx(RADIUS, rel=2e-3)
-        scale = 40_000.0
-        picture = np.zeros((900, 200, 3), dtype=np.uint8)
-        camera = Camera(scale, (100.0, 600.0))
-        paint_chains(picture, camera, bed, 0, typical, (255, 255, 255))
+    (bed,) = choose_beds(standing)
+    found, place = bed.pressing(0), bed.position(0)
+    _, arms, thickness, typical = chains(found, place, typical=float(hertz().max()))
+    assert typical == pytest.approx(hertz().max())
+    order = np.argsort(np.hypot(*found.force.T))[::-1]
+    assert thickness[: len(order)][order] == pytest.approx(hertz() / hertz().max(), rel=1e-3)
+    assert np.abs(arms[:, 0]).max() < 1e-9 and np.hypot(*arms.T) == pytest.approx(RADIUS, rel=2e-3)
+    scale = 40_000.0
+    picture = np.zeros((900, 200, 3), dtype=np.uint8)
+    camera = Camera(scale, (100.0, 600.0))
+    paint_chains(picture, camera, bed, 0, typical, (255, 255, 255))
     painted = picture[..., 0] / 255.0
     width = {pair: painted[round(600.0 - scale * z)].sum() for pair, z in ((0, 0.5 * RADIUS), (1, 1.7 * RADIUS))}
     for k, share in enumerate(hertz()[:2] / hertz().max()):
@@ -109,35 +116,25 @@ def test_chains_are_as_thick_as_their_forces_and_reach_to_the_contacts(standing)
 
 
 def test_a_film_of_forces_says_how_thick_a_line_is_and_pales_the_grains(standing):
-    with open_footage(standing) as footage:
-        beds = choose_beds(footage)
-        plain, forces = (
-            Film(beds, choose_look(footage, width=640, height=360, frame="tank", colour="cargo", overlay=overlay))
-            for overlay in ("none", "forces")
-        )
-        before, after = plain.picture(0), forces.picture(0)
-        assert "note" in forces.written and "note" not in plain.written
-        x, y = np.rint(forces.tank_camera(0, 0).pixels(np.array([[0.03, 0.05]]))[0]).astype(int)
-        assert after[y, x].astype(int).sum() > before[y, x].astype(int).sum() + 60  # the grain without contacts
-        red = THEMES["light"].force
-        at = np.argwhere(np.abs(after.astype(int) - red).max(axis=2) < 12)
-        box_of = forces.written["note"]
-        assert (at[:, 1] < box_of[0]).any() and (np.abs(at[:, 0] - 0.5 * (box_of[1] + box_of[3])) < 4).any()
+    beds = choose_beds(standing)
+    plain, forces = (
+        Film(beds, choose_look(standing, width=640, height=360, frame="tank", colour="cargo", overlay=overlay))
+        for overlay in ("none", "forces")
+    )
+    before, after = plain.picture(0), forces.picture(0)
+    assert "note" in forces.written and "note" not in plain.written
+    x, y = np.rint(forces.tank_camera(0, 0).pixels(np.array([[0.03, 0.05]]))[0]).astype(int)
+    assert after[y, x].astype(int).sum() > before[y, x].astype(int).sum() + 60  # the grain without contacts
+    red = THEMES["light"].force
+    at = np.argwhere(np.abs(after.astype(int) - red).max(axis=2) < 12)
+    box_of = forces.written["note"]
+    assert (at[:, 1] < box_of[0]).any() and (np.abs(at[:, 0] - 0.5 * (box_of[1] + box_of[3])) < 4).any()
 
 
 def test_the_pressure_in_grains_has_one_scale_for_the_film(standing):
-    with open_footage(standing) as footage:
-        film = Film(choose_beds(footage), choose_look(footage, width=640, height=360, colour="pressure"))
-        scale = film._bar
-        assert scale.label == "pressure in grains (kPa)"
-        (bed,) = choose_beds(footage)
-        values = scale.values(bed, 0)
-        assert (np.diff(values) < 0.0).all() and values[3] == 0.0 and values[0] <= 1.05 * scale.high
-
-
-def test_grains_that_lie_in_each_other_are_refused_in_one_sentence(tmp_path):
-    with recorder(tmp_path, radius=np.full((1, 4), RADIUS)) as writer:
-        writer.sample(sample(0.0))
-        writer.frame(frame(0.0, position=np.full((1, 4, 2), 0.02)))
-    with open_footage(tmp_path) as footage, pytest.raises(LabError, match=r"at 0 s: grains lie in each other\.$"):
-        choose_beds(footage)[0].pressing(0)
+    film = Film(choose_beds(standing), choose_look(standing, width=640, height=360, colour="pressure"))
+    scale = film._bar
+    assert scale.label == "pressure in grains (kPa)"
+    (bed,) = choose_beds(standing)
+    values = scale.values(bed, 0)
+    assert (np.diff(values) < 0.0).all() and values[3] == 0.0 and values[0] <= 1.05 * scale.high

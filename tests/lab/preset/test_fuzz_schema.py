@@ -27,7 +27,7 @@ SHIP = {
     },
     "waves": {"amplitude": "10 mm", "frequency": "5 rad/s"},
 }
-FEW, MANY = 300, int(os.environ.get("FUZZ", 20_000))
+FEW, MANY = 150, int(os.environ.get("FUZZ", 20_000))
 BASES = [*map(tomllib.loads, (RICH, LISTED, WET)), SHIP]
 TOP = {key.partition(".")[0] for key, _ in walk(Preset)}
 

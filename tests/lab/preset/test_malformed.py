@@ -159,7 +159,7 @@ ODD_TREES = st.recursive(
 MOST_GRAINS, MOST_DROPS = 600, 100_000  # of a mangled preset that is built
 KEYS = sorted(key for key, _ in walk(Preset))
 
-often = pytest.mark.parametrize("times", [1, pytest.param(30, marks=pytest.mark.slow)])
+often = pytest.mark.parametrize("times", [1, pytest.param(50, marks=pytest.mark.slow)])
 
 
 SHIPS = [name for name in names() if name.startswith("ship/")][1:]  # one is enough: their tables take a second each
@@ -325,7 +325,7 @@ def test_the_presets_to_be_mangled_are_valid(folder, sound):
 def test_a_mangled_preset_is_refused_in_one_sentence_or_can_be_built(folder, sound, times):
     passed = []
 
-    @examples(100 * times)
+    @examples(60 * times)
     @given(mangled(sound))
     def check(table):
         passed.append(tried(write(folder, table)))
@@ -338,7 +338,7 @@ def test_a_mangled_preset_is_refused_in_one_sentence_or_can_be_built(folder, sou
 def test_mangled_overrides_are_refused_in_one_sentence_or_can_be_built(folder, times):
     (folder / "rich.toml").write_text(RICH)
 
-    @examples(100 * times)
+    @examples(60 * times)
     @given(st.dictionaries(st.sampled_from(KEYS) | st.text(max_size=9), ODD_TREES, min_size=1, max_size=3))
     def check(overrides):
         tried(folder / "rich.toml", overrides)
@@ -348,7 +348,7 @@ def test_mangled_overrides_are_refused_in_one_sentence_or_can_be_built(folder, t
 
 @often
 def test_damaged_bytes_of_a_preset_are_refused_in_one_sentence_or_can_be_built(folder, sound, times):
-    @examples(100 * times)
+    @examples(60 * times)
     @given(st.sampled_from(sound), st.data())
     def check(text, data):
         (folder / "bytes.toml").write_bytes(damaged(data.draw, text.encode()))
@@ -370,7 +370,7 @@ def damaged(draw, content: bytes) -> bytes:
 def test_damaged_tables_are_refused_in_one_sentence_or_can_be_built(folder, name, text, times, tmp_path):
     (tmp_path / "preset.toml").write_text(text)
 
-    @examples(80 * times)
+    @examples(50 * times)
     @given(mangled_table(TABLES[name]) | st.data())
     def check(content):
         if not isinstance(content, bytes):

@@ -70,13 +70,13 @@ def bit_of(path: Path, name: str, row: int) -> int:
         return 8 * (chunk.byte_offset + row % data.chunks[0] * int(np.prod(data.shape[1:])) * data.dtype.itemsize) + 3
 
 
-@pytest.mark.parametrize("times", [1, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("times", [1, pytest.param(8, marks=pytest.mark.slow)])
 def test_a_flipped_bit_is_reported_and_never_read(whole, tmp_path, times):
-    """So many times 50 of all bits that hold numbers or texts, and 10 of the rest of the file."""
+    """So many times 25 of all bits that hold numbers or texts, and 5 of the rest of the file."""
     expected, chance = contents(whole), random.Random(11)
     places = used(whole).tolist()
-    bits = [8 * chance.choice(places) + chance.randrange(8) for _ in range(50 * times)]
-    everywhere = [chance.randrange(8 * whole.stat().st_size) for _ in range(10 * times)]
+    bits = [8 * chance.choice(places) + chance.randrange(8) for _ in range(25 * times)]
+    everywhere = [chance.randrange(8 * whole.stat().st_size) for _ in range(5 * times)]
     caught = []
     for bit in bits + everywhere:
         path = damaged(whole, tmp_path, [bit])

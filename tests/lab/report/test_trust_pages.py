@@ -37,6 +37,8 @@ NASTY = [
     "---\n***\n===\n- item\n> quoted\n1. one\n    indented",
 ]
 
+TO_DRAW = NASTY[3], NASTY[8], NASTY[10]  # what a figure may take for more than text: lines, control codes, formulas
+
 
 def tokens(page: str) -> list:
     """All tokens of a Markdown page in which HTML counts, as GitHub and most viewers take it."""
@@ -93,7 +95,9 @@ def test_a_summary_shows_texts_of_a_recording_escaped(text, tmp_path, usual):
     assert data["warnings"][0] == text
 
 
-@pytest.mark.parametrize("text", NASTY)
+@pytest.mark.parametrize(
+    "text", [pytest.param(text, marks=() if text in TO_DRAW else pytest.mark.slow) for text in NASTY]
+)
 def test_any_title_is_drawn(text, tmp_path):
     with recorder(tmp_path, resolved=preset() | {"title": text}) as writer:
         for now in (0.0, 1.0, 2.0):

@@ -20,7 +20,6 @@ water = { depth = "24 mm", spacing = "6 mm", sound_speed = "12 m/s" }
 air = {}
 gauges.P1 = { place = ["-30 mm", "12 mm"] }
 gauges.A1 = { place = ["0 mm", "60 mm"] }
-gauges.F1 = { kind = "force", place = ["0 mm", "0 mm"] }  # as `tests/solvers/fluid/test_air.py` has some: one kernel
 motion.sway = { amplitude = "3 mm", frequency = "3 Hz" }
 run = { duration = "0.4 s", threads = 1, schedule = "per-world" }
 record.checkpoint_every = "0 s"

@@ -47,11 +47,28 @@ def no_plots():
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def done(tmp_path_factory):
+    """The uninterrupted run; what would be there, had it been killed after a checkpoint; and its rows up to there."""
+    folder, save, kept = tmp_path_factory.mktemp("whole") / "run", Batch.save, []
+    cut = folder.with_name("cut")
+
+    def noted(batch):
+        save(batch)
+        rows = batch._recorders[0].rows
+        if rows[0] > 20 and not kept:
+            kept.append(rows)
+            shutil.copytree(folder, cut)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Batch, "save", noted)
+        run_preset("tilting/quick", SMALL, folder, video=False, quiet=True)
+    return contents(folder), cut, kept[0]
+
+
+@pytest.fixture(scope="module")
+def whole(done):
     """The uninterrupted run."""
-    folder = tmp_path_factory.mktemp("whole") / "run"
-    run_preset("tilting/quick", SMALL, folder, video=False, quiet=True)
-    return contents(folder)
+    return done[0]
 
 
 def contents(folder: Path) -> dict[str, np.ndarray]:
@@ -254,22 +271,11 @@ def test_a_damaged_checkpoint_is_refused_in_one_sentence(tmp_path):
     assert refused > 1500
 
 
-def test_a_run_with_damage_after_its_checkpoint_continues_with_the_same_bits(whole, tmp_path):
+def test_a_run_with_damage_after_its_checkpoint_continues_with_the_same_bits(done, tmp_path):
     """A flipped bit is written over where its row comes again; before the checkpoint it is said."""
-    folder = tmp_path / "run"
-    kept = []
-
-    def interrupt(batch, *_):
-        save(batch)
-        kept.append(batch._recorders[0].rows)
-        if kept[-1][0] > 20:
-            raise KeyboardInterrupt
-
-    save = Batch.save
-    with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(Batch, "save", interrupt)
-        run_preset("tilting/quick", SMALL, folder, video=False, quiet=True)
-    before, (rows, _) = (folder / "recording.h5").read_bytes(), kept[-1]
+    whole, cut, (rows, frames) = done
+    folder = shutil.copytree(cut, tmp_path / "run")
+    before = (folder / "recording.h5").read_bytes()
     flip(folder, "series/kinetic", rows - 1)
     with pytest.raises(
         LabError, match=f"series/kinetic is damaged from row {rows - 1} of {rows}, before its checkpoint"
@@ -278,7 +284,7 @@ def test_a_run_with_damage_after_its_checkpoint_continues_with_the_same_bits(who
     (folder / "recording.h5").write_bytes(before)
     with open_recording(folder) as found:
         last = {name: values[-1] for name, values in found.series.items()}
-    longer = Recorder(folder, samples=rows, frames=kept[-1][1])
+    longer = Recorder(folder, samples=rows, frames=frames)
     longer.sample(last)  # rows that will come again
     longer.sample(last)
     longer.close("running")

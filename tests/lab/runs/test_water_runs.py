@@ -51,8 +51,18 @@ def no_plots():
 
 @pytest.fixture(scope="module")
 def swayed(cup):
-    folder = cup.parent / "run"
-    run_preset(cup, out=folder, video=False, quiet=True)
+    """The folder of a run; in the folder `cut` beside it is what would be there, had the run been killed."""
+    folder, pause, paused = cup.parent / "run", Batch._pause, []
+
+    def noted(batch, interrupt):
+        pause(batch, interrupt)
+        paused.append(batch)
+        if len(paused) == 30:
+            copytree(folder, folder.with_name("cut"))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Batch, "_pause", noted)
+        run_preset(cup, out=folder, video=False, quiet=True)
     return folder
 
 
@@ -101,32 +111,19 @@ def test_explain_says_what_the_water_is_and_what_sets_the_step(cup):
     assert "grain" not in page and "settl" not in page
 
 
-@pytest.fixture(scope="module")
-def cut(cup):
-    """The folder of such a run that was interrupted."""
-    folder, pause, paused = cup.parent / "again", Batch._pause, []
-
-    def interrupted(batch, interrupt):
-        paused.append(pause(batch, interrupt))
-        if len(paused) == 30:
-            raise KeyboardInterrupt
-
-    with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(Batch, "_pause", interrupted)
-        run_preset(cup, out=folder, video=False, quiet=True)
-    return folder
-
-
-def test_a_recording_of_other_water_is_not_continued(cut, tmp_path, monkeypatch):
+def test_a_recording_of_other_water_is_not_continued(swayed, tmp_path, monkeypatch):
     """Such as after a change of how the particles are laid."""
-    copytree(cut, tmp_path / "run")
+    copytree(swayed.with_name("cut"), tmp_path / "run")
     usual = STARTS["packed"]
     monkeypatch.setitem(STARTS, "packed", lambda *of: usual(*of[:2], replace(of[2], spacing=0.8 * of[2].spacing)))
     with pytest.raises(Unusable, match="does not belong to the preset in it"):
         resume_run(tmp_path / "run", video=False, quiet=True)
 
 
-def test_an_interrupted_run_goes_on_with_the_same_bits(swayed, cut):
+def test_a_run_that_was_killed_goes_on_with_the_same_bits(swayed):
+    cut = swayed.with_name("cut")
+    with open_recording(cut) as recording:
+        assert 0 < len(recording.series["time"]) < 81
     resume_run(cut, video=False, quiet=True)
     same(swayed, cut)
 

@@ -53,7 +53,7 @@ def in_the_solver(normal: str, tangential: str, e: float, integrator: str, parts
 @pytest.mark.parametrize(
     ("normal", "tangential", "integrator"),
     [
-        ("linear", "cundall-strack", "verlet"),
+        pytest.param("linear", "cundall-strack", "verlet", marks=pytest.mark.slow),
         pytest.param("hertz-viscoelastic", "cundall-strack", "verlet", marks=pytest.mark.slow),
         ("hertz-viscoelastic", "mindlin", "verlet"),
         pytest.param("linear", "cundall-strack", "gear", marks=pytest.mark.slow),

@@ -67,7 +67,9 @@ def measures(capsized, flooded, alone):
     return {"capsized_at": over_worlds(capsized, "s"), "flooded_at": over_worlds(flooded, "s"), **frozen}
 
 
-def test_beds_are_counted():
+def test_beds_are_counted(monkeypatch):
+    monkeypatch.setattr(low_sides, "CURVE", np.array([15.0, 25.0]))  # of heaps, behind the beds
+
     def run(size, capsized, flooded):
         return Outcome({AMPLITUDE: size}, None, "complete", measures(capsized, flooded, np.nan), {})
 

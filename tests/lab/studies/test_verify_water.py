@@ -98,13 +98,14 @@ def test_a_hole_in_a_patch_is_seen():
     assert patch.widest_gap(place[np.hypot(*(place - 0.1).T) > 0.12]) > 0.09
 
 
+@pytest.mark.slow  # its physics is in `tests/solvers/fluid/test_motion.py`
 def test_a_strained_drop_passes():
-    """The cheapest case that runs water; the others are run by `test_fast_cases_pass_and_leave_a_page`."""
     found = drops.ellipse(True)
     assert found.lines and all(line.passed for line in found.lines)
 
 
 def test_a_free_drop_keeps_its_momentum():
+    """The cheapest case that runs water; the others are run by `test_fast_cases_pass_and_leave_a_page`."""
     assert balance.free_drop().passed
 
 

@@ -39,6 +39,7 @@ SMALL = {
     "tank": {"width": "24 mm", "height": "24 mm"},
     "motion": {"tilt": False, "sway": {"amplitude": "4 mm"}},
     "grains": {"count": 16},
+    "contact": {"tangential": "none"},
     "run": {"repeats": 1, "threads": 1, "settle": False, "duration": "0.1 s"},
 }
 AXES = {"motion.sway.frequency": "1, 2, 3 Hz"}  # as many as in the tests of sweeps: kernels are for so many worlds

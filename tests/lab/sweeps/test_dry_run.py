@@ -9,6 +9,7 @@ from lab.sweeps.dry_run import available_measures
 SMALL = {
     "tank": {"width": "24 mm", "height": "24 mm"},
     "grains": {"count": 16, "depth": False},
+    "contact": {"tangential": "none"},
     "run": {"repeats": 1, "threads": 1},
 }
 RUNS = {

@@ -43,7 +43,7 @@ def test_beds_of_one_slope_have_students_interval():
     assert found.interval == pytest.approx((0.5 - 0.1 * half, 0.5 + 0.1 * half), abs=4e-4)
 
 
-@pytest.mark.parametrize("beds", [4, 8, pytest.param(30, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("beds", [4, *(pytest.param(n, marks=pytest.mark.slow) for n in (8, 30))])
 def test_the_interval_contains_the_value_at_its_confidence_level(beds):
     random, held, trials = np.random.default_rng(beds), 0, 500
     for _ in range(trials):

@@ -37,6 +37,7 @@ ROOT = Path(__file__).parents[3]
 SMALL = {
     "tank": {"width": "24 mm", "height": "24 mm"},
     "grains": {"count": 16},
+    "contact": {"tangential": "none"},  # compiles faster
     "motion": {"tilt": False, "sway": {"amplitude": "4 mm"}},
     "run": {"repeats": 1, "threads": 1, "duration": "0.3 s"},
 }

@@ -1,6 +1,12 @@
 """A steered experiment: recorded, and repeated bit for bit."""
 
 import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import h5py
@@ -111,6 +117,58 @@ def test_a_run_that_was_not_steered_is_not_replayed(steered, tmp_path):
         del file["steering"], file["checks/steering"]
     with pytest.raises(LabError, match="not steered by a user"):
         replay(folder, quiet=True)
+
+
+TOOLS = [name for name in ("Xvfb", "xdotool") if not shutil.which(name)]
+
+
+@pytest.mark.skipif(bool(TOOLS), reason=f"{' and '.join(TOOLS)} not installed")
+@pytest.mark.parametrize("window", ["gui", pytest.param("ggui", marks=pytest.mark.slow)])
+def test_a_real_window_takes_keys(window, tmp_path):
+    """On a virtual screen: forces appear with O, Escape closes, also from the panel."""
+    from PIL import ImageGrab
+
+    display = f":{90 + os.getpid() % 900}"
+    screen = subprocess.Popen(["Xvfb", display, "-screen", "0", "1400x900x24"], stderr=subprocess.DEVNULL)
+    environment = {**os.environ, "DISPLAY": display, "PYTHONPATH": str(Path(__file__).parents[3])}
+
+    def tool(*words: str) -> str:
+        return subprocess.run(["xdotool", *words], env=environment, capture_output=True, text=True).stdout
+
+    def reds() -> int:
+        seen = np.asarray(ImageGrab.grab(xdisplay=display)).astype(int)
+        return int(((seen[..., 0] > 180) & (seen[..., 1] < 60)).sum())
+
+    settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]  # compiled already
+    asked = ["tilting/quick", *settings, "--window", window, "--out", str(tmp_path / "v")]
+    begun = {"env": environment, "cwd": tmp_path, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    program = subprocess.Popen([sys.executable, "-m", "lab", "view", *asked], **begun)
+    try:
+        recording, until = tmp_path / "v" / "recording.h5", time.monotonic() + 150
+        while not recording.exists() and program.poll() is None and time.monotonic() < until:
+            time.sleep(0.1)
+        until, found = time.monotonic() + 150, []
+        while not found and program.poll() is None and time.monotonic() < until:
+            time.sleep(0.2)
+            found = tool("search", "--name", "Cargo Shift Lab").split()
+        assert found, program.communicate(timeout=5)[0] if program.poll() is not None else "no window"
+        tool("windowfocus", found[0])
+        before = reds()
+        tool("key", "--window", found[0], "o")
+        while reds() <= before + 100 and time.monotonic() < until:
+            time.sleep(0.2)
+        assert reds() > before + 100
+        tool("key", "--window", found[0], "p")  # imgui's panel, where there is one
+        time.sleep(0.5)
+        tool("key", "--window", found[0], "Escape")
+        folder = program.communicate(timeout=60)[0].strip()
+    finally:
+        program.kill()
+        screen.terminate()  # kill would leave its lock
+        screen.wait(timeout=30)
+    assert folder == str(tmp_path / "v")
+    assert [path.name for path in tmp_path.iterdir()] == ["v"]
+    assert program.returncode == 0
 
 
 @pytest.mark.slow

@@ -1,13 +1,7 @@
 """The user's side of a live experiment: pictures and actions, driven by events without a window."""
 
-import os
-import shutil
-import subprocess
-import sys
-import time
 from dataclasses import replace
 from multiprocessing import Pipe
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -415,56 +409,3 @@ def test_without_a_display_one_sentence_names_the_command_without_window(monkeyp
     assert result.output.strip().splitlines() == [
         f"cargolab: there is no display for a window here: `cargolab run {PRESET}` runs it and films it."
     ]
-
-
-TOOLS = [name for name in ("Xvfb", "xdotool") if not shutil.which(name)]
-
-
-@pytest.mark.skipif(bool(TOOLS), reason=f"{' and '.join(TOOLS)} not installed")
-@pytest.mark.parametrize("window", ["gui", pytest.param("ggui", marks=pytest.mark.slow)])
-def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
-    """On a virtual screen: forces appear with O, friction follows the mouse, Escape closes."""
-    from PIL import ImageGrab
-
-    display = f":{90 + os.getpid() % 900}"
-    screen = subprocess.Popen(["Xvfb", display, "-screen", "0", "1400x900x24"], stderr=subprocess.DEVNULL)
-    environment = {**os.environ, "DISPLAY": display, "PYTHONPATH": str(Path(__file__).parents[3])}
-
-    def tool(*words: str) -> str:
-        return subprocess.run(["xdotool", *words], env=environment, capture_output=True, text=True).stdout
-
-    def reds() -> int:
-        seen = np.asarray(ImageGrab.grab(xdisplay=display)).astype(int)
-        return int(((seen[..., 0] > 180) & (seen[..., 1] < 60)).sum())
-
-    quick = SMALL | {"contact.tangential": "none"}  # compiles fast
-    settings = [word for key, value in quick.items() for word in ("--set", f"{key}={value}")]
-    command = [sys.executable, "-m", "lab", "view", PRESET, *settings, "--window", window, "--out", str(tmp_path / "v")]
-    begun = {"env": environment, "cwd": tmp_path, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    program = subprocess.Popen(command, **begun)
-    try:
-        recording, until = tmp_path / "v" / "recording.h5", time.monotonic() + 150
-        while not recording.exists() and program.poll() is None and time.monotonic() < until:
-            time.sleep(0.5)
-        until, found = time.monotonic() + 150, []
-        while not found and program.poll() is None and time.monotonic() < until:
-            time.sleep(1.0)
-            found = tool("search", "--name", "Cargo Shift Lab").split()
-        assert found, program.communicate(timeout=5)[0] if program.poll() is not None else "no window"
-        tool("windowfocus", found[0])
-        before = reds()
-        tool("key", "--window", found[0], "o")
-        while reds() <= before + 100 and time.monotonic() < until:
-            time.sleep(0.3)
-        assert reds() > before + 100
-        tool("key", "--window", found[0], "p")  # imgui's panel, where there is one
-        time.sleep(1.0)
-        tool("key", "--window", found[0], "Escape")
-        folder = program.communicate(timeout=60)[0].strip()
-    finally:
-        program.kill()
-        screen.terminate()  # kill would leave its lock
-        screen.wait(timeout=30)
-    assert folder == str(tmp_path / "v")
-    assert [path.name for path in tmp_path.iterdir()] == ["v"]
-    assert program.returncode == 0

@@ -20,9 +20,8 @@ from tests.oracles.water import GRAVITY, box
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
 # The same in all, and in a run of a preset (`tests/lab/runs/test_air_runs.py`): one kernel.
 TOLD = {
-    "gauges": (Gauge((0.16, 0.0), 0.02), Gauge((-0.16, 0.28), 0.02)),
+    "gauges": (Gauge((0.16, 0.0), 0.02), Gauge((-0.16, 0.28), 0.02), Gauge((-0.16, 0.16), 0.02)),
     "levels": (Level(0.0),),
-    "edges": (0, 2),
     "motions": [[Sway(0.0, 1.0)]],
 }
 
@@ -41,7 +40,7 @@ def held(run: Simulation) -> list[np.ndarray]:
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Simulation]:
-    """Water and air at rest; some others place their water and air in it."""
+    """A simulation in which the tests place their water and air."""
     made = Simulation(scene(background=40.0), threads=1, arch="cpu")
     yield made
     made.close()
@@ -49,7 +48,7 @@ def pool() -> Iterator[Simulation]:
 
 def test_water_rests_under_air(pool):
     """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
-    pool.observe()
+    again(pool, scene(background=40.0)).observe()
     pool.advance(1500)
     rows, state, spacing = pool.observe(), pool.snapshot(), pool.scene.water.spacing
     gas, mass = pool.scene.drops[0, :, GAS] > 0.5, held(pool)[3]
@@ -109,30 +108,28 @@ def test_air_that_has_lost_volume_takes_it_again(pool):
     before = run.observe()["air_volume"][0]
     run.advance(300)
     gained = run.observe()["air_volume"][0] / before - 1.0
-    run.close()  # those that follow, up to the slow ones, have its kernels
     assert 0.5 < gained / (0.1 * rate * 300 * run.dt) < 1.3
 
 
-def test_a_gauge_at_the_surface_does_not_show_the_background():
+def test_a_gauge_at_the_surface_does_not_show_the_background(pool):
     """Water sloshes under real air, its sound faster than it needs: a gauge at the still level shows no suction."""
     air, speed = Air(sound_speed=343.0, alpha=0.1), np.sqrt(GRAVITY * DEPTH)
     water = Water(DEPTH / ROWS, 46.5, air=air, speed=speed)
-    gauges = (*TOLD["gauges"], Gauge((-0.5 * WIDTH, DEPTH), 0.02))
-    more = {"sound_speed": 46.5, "speed": speed, "gauges": gauges, "background": background(air, water)}
+    more = {"sound_speed": 46.5, "speed": speed, "background": background(air, water)}
     made = scene(air={"sound_speed": 343.0, "alpha": 0.1}, **more)
     k, (y, z) = np.pi / WIDTH, made.drops[0, :, :2].T
     wet = made.drops[0, :, GAS] < 0.5
     made.drops[0, wet, VELOCITY_Y] = 0.2 * (np.cos(k * y) * np.cosh(k * z) / np.sinh(k * DEPTH))[wet]
     made.drops[0, wet, VELOCITY_Z] = 0.2 * (np.sin(k * y) * np.sinh(k * z) / np.sinh(k * DEPTH))[wet]
-    run, shown = Simulation(made, threads=1, arch="cpu"), []
+    run, shown = again(pool, made), []
+    run.observe()
     for step in range(1, 7):
         run.advance(round(0.02 * step / run.dt) - run.steps)
         shown.append(run.observe()["gauge_pressure"][0])
-    run.close()
     assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
 
 
-def stirred(step: float | None = None, **of_air) -> Simulation:
+def stirred(step: float | None = None, **of_air) -> Scene:
     """Both phases displaced and set in motion at random, the air slower than the water's sound, with drops in it."""
     made = scene(air={"sound_speed": 9.0, "alpha": 0.03} | of_air, background=60.0, step=step)
     random, drops = np.random.default_rng(1), made.drops
@@ -142,12 +139,12 @@ def stirred(step: float | None = None, **of_air) -> Simulation:
     made.drops = drops = drops[:, np.argsort(drops[0, :, GAS], kind="stable")]
     drops[..., :2] += 0.1 * made.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
     drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
-    return Simulation(made, threads=1, arch="cpu")
+    return made
 
 
 @pytest.fixture(scope="module")
-def run() -> Simulation:
-    return stirred()
+def run(pool) -> Simulation:
+    return again(pool, stirred())
 
 
 def follows_double_sums(run: Simulation, steps: int = 7) -> None:
@@ -196,6 +193,7 @@ def test_energy_is_accounted_for(run):
     taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
     assert lost > 0.0
     np.testing.assert_allclose(taken, lost, rtol=0.03)
+    run.close()  # the slow ones that follow find its kernels
 
 
 @pytest.mark.slow
@@ -217,7 +215,8 @@ def test_other_ways_of_running_give_the_same(changes):
 
 @pytest.mark.slow
 def test_a_step_with_cohesion_equals_double_sums():
-    follows_double_sums(stirred(step=1e-5, interface="cohesion", cohesion=20.0), 1)  # water throws air off
+    made = stirred(step=1e-5, interface="cohesion", cohesion=20.0)
+    follows_double_sums(Simulation(made, threads=1, arch="cpu"), 1)  # water throws air off
 
 
 @pytest.mark.slow

@@ -1,5 +1,7 @@
 """Bodies and plates that stand or move in the water: loads, momentum, energy, tightness, added mass."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from solvers.motion.harmonic import Heave, Roll, Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Body
-from tests.oracles.water import GRAVITY, box, still
+from tests.oracles.water import GRAVITY, again, box, still
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.6, 0.6, 0.3, 15
 SPACING = DEPTH / ROWS
@@ -28,6 +30,23 @@ def stirred(share: float) -> Scene:
     return still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, drops=drops[:, free], alpha=0.02)
 
 
+@pytest.fixture(scope="module")
+def run() -> Iterator[Simulation]:
+    made = Simulation(stirred(1.0), threads=1, arch="cpu")
+    yield made
+    made.close()
+
+
+def moved(run: Simulation, share: float) -> Simulation:
+    """The same simulation from its start, the bodies with this share of their full motions."""
+    again(run, stirred(share))
+    for carrier, part in zip(run.water.bodies.carriers, run.scene.parts, strict=True):
+        centres = [motion.centre if motion.coordinate == "turn" else (0.0, 0.0) for motion in part.motions]
+        numbers = [(*at, *motion.parameters(0.0)) for at, motion in zip(centres, part.motions, strict=True)]
+        carrier.table.from_numpy(np.concatenate(numbers)[None])
+    return run
+
+
 def momentum(run: Simulation) -> tuple[np.ndarray, float]:
     """Momentum over the earth (N s/m) and mass (kg/m) of the water of the first world."""
     p = run.water.particles
@@ -35,13 +54,12 @@ def momentum(run: Simulation) -> tuple[np.ndarray, float]:
     return np.array([m @ v, m @ w]), m.sum()
 
 
-def test_water_tank_and_bodies_share_momentum_and_energy():
+def test_water_tank_and_bodies_share_momentum_and_energy(run):
     """Momentum changes by weight and by minus all loads, to rounding; the work of the bodies is all accounted for.
 
     The account has the errors of the step on a start from rest with a jump of the bodies' velocities: 1 % of the work.
     """
-    run = Simulation(stirred(1.0), threads=1, arch="cpu")
-    start = run.observe()
+    start = moved(run, 1.0).observe()
     run.advance(10)
     run.observe()
     (before, mass), steps = momentum(run), 590
@@ -58,21 +76,19 @@ def test_water_tank_and_bodies_share_momentum_and_energy():
     turn = run.snapshot()["part_turn"][0]
     angles = [0.1 * np.sin(2.0 * np.pi * frequency * run.time) for frequency in (1.5, 1.0)]
     np.testing.assert_allclose(turn, angles, atol=1e-12)
-    run.close()
 
 
-def test_bodies_in_still_water_bear_its_pressure():
+def test_bodies_in_still_water_bear_its_pressure(run):
     """A square 8 spacings wide bears its own weight of water (Archimedes), to 4 %, a plate between two levels their
     difference, and no water passes it. The load on the tank and the bodies is the weight of the water.
     """
-    run = Simulation(stirred(1e-9), threads=1, arch="cpu")
-    run.observe()
+    moved(run, 0.0).observe()
     run.advance(100)
     run.observe()
     beyond = run.snapshot()["water_place"][0, :, 0] > FLAP[0][0]
     run.advance(500)
     rows, mass, place = run.observe(), momentum(run)[1], run.snapshot()["water_place"][0]
-    run.close()
+    run.close()  # the slow ones that follow find its kernels
     np.testing.assert_array_equal(place[:, 0] > FLAP[0][0], beyond)
     buoyancy = 1000.0 * GRAVITY * 0.16**2
     np.testing.assert_allclose(rows["part_force"][0, 0, :2], [0.0, buoyancy], atol=0.04 * buoyancy)

@@ -19,6 +19,8 @@ from solvers.machine.units import Units
 from tests.oracles.axes import axes
 from tests.oracles.scenes import material
 
+pytestmark = pytest.mark.usefixtures("one_start")
+
 RADIUS = 7.5e-4  # m, effective
 MASS = 4 / 3 * pi * (2 * RADIUS) ** 3 * 1319.0 / 2
 DT = 4e-7
