@@ -117,9 +117,8 @@ class Lists:
         skin = ti.max(SKIN[0] * spacing, ti.min(SKIN[1] * spacing, 2.0 * LASTING * self.last[u]))
         if ti.static(self.units.single):  # all worlds together are told one skin before they go on
             skin = SKIN[1] * spacing
-        reach, fits = self.constants.get("reach") + skin, True
+        reach, fits, found, walls = self.constants.get("reach") + skin, True, 0, 0
         first, end = self.shares.wet(u)
-        found, walls = 0, 0
         for b in range(first, end):
             self.near.first[u, b - first], self.beside.first[u, (b - first) * self.pieces] = found, walls
             for image in ti.static(self.images):
