@@ -26,7 +26,7 @@ class Lean:
 
     Limits: only away from corners, ends and other walls (FAR). There the water leans because another wall ends it, and
     the pushes of both walls bear each other; with part of them taken off, the pressure of 40 layers at rest between
-    chamfers was off by 2 % of ρ g H, and a piston's waves were lower by a twentieth. So a surface within 1.5 reaches of
+    chamfers was off by 2 % of ρ g H, and a piston's waves were lower by a tenth. So a surface within 1.5 reaches of
     a corner, a wall of short edges, water beside air and full tanks, which have no `Closing`, are as they were.
     """
 
