@@ -40,7 +40,7 @@ def reproduce(
     """
     known = experiments(report)
     chosen = choose(names, known, "experiment")
-    chosen = [name for name in chosen if _has_data(known[name], name, bool(names))]
+    chosen = [name for name in chosen if _can_run(known[name], name, quick, names)]
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     folders = places(known, work, quick)
     told = read_findings(kept_file(report, out, quick), known, quick)
@@ -62,8 +62,12 @@ def reproduce(
     return page
 
 
-def _has_data(one: Experiment, name: str, asked: bool) -> bool:
-    """Whether the measured series that an experiment needs is there. Raises LabError for one that was asked for."""
+def _can_run(one: Experiment, name: str, quick: bool, asked: Sequence[str]) -> bool:
+    """Whether an experiment has such runs and the measured series that it needs. Raises LabError for one asked for."""
+    if not one.batches(quick):
+        if name in asked:
+            raise LabError(f"{name}: has no quick runs; leave out --quick.")
+        return False
     if not one.needs or data_file(one.needs):
         return True
     if asked:

@@ -61,7 +61,7 @@ def write_page(
         level=f"{100.0 * LEVEL:g}",
         limits=QUICK if quick else less,
         quick=quick,
-        overview=[_overview(experiments[one], findings.get(one)) for one in (*told, *missing)],
+        overview=[_overview(experiments[one], findings.get(one), quick) for one in (*told, *missing)],
         sections=[(experiments[one], findings[one], _cells(findings[one].rows)) for one in told],
     )
 
@@ -119,10 +119,11 @@ def _badness(rows: Sequence[Row]) -> tuple[int, int]:
     return differ, open_ones
 
 
-def _overview(experiment: Experiment, finding: Finding | None) -> list[object]:
+def _overview(experiment: Experiment, finding: Finding | None, quick: bool) -> list[object]:
     """The line of an experiment."""
     if finding is None:
-        return [experiment.title, experiment.section, "not run", *[""] * (len(Verdict) + 1)]
+        why = "not run" if experiment.batches(quick) else "not among the quick ones"
+        return [experiment.title, experiment.section, why, *[""] * (len(Verdict) + 1)]
     counts = _counts(finding.rows)
     cost = f"{finding.grain_steps:.2g}", f"{finding.wall_s:.0f} s"
     return [experiment.title, experiment.section, *(counts if any(counts) else ["–"] * len(counts)), *cost]

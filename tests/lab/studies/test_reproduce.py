@@ -154,6 +154,16 @@ def test_shared_runs_of_two_experiments_are_run_once(tmp_path, monkeypatch):
     assert package.places(experiments("granular"), tmp_path / "full", False)["tilt-low-walls"]["high walls"] == shared
 
 
+def test_what_has_no_quick_runs_is_left_out_of_them_and_refused_by_its_name(tmp_path, monkeypatch):
+    ran = []
+    monkeypatch.setattr(workers, "carry_out", lambda batch, folder, quiet: ran.append(folder.parent.name))
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)
+    text = reproduce("water", ["prismatic-f", "prismatic-sw"], tmp_path, quick=True, quiet=True).read_text()
+    assert set(ran) == {"prismatic-sway"} and "not among the quick ones" in text
+    with pytest.raises(LabError, match="prismatic-fine: has no quick runs"):
+        reproduce("water", ["prismatic-fine"], tmp_path, quick=True, quiet=True)
+
+
 def test_missing_runs_are_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "carry_out", lambda *_: None)
     monkeypatch.setattr(runtime, "available_cores", lambda: 1)
