@@ -32,8 +32,8 @@ class Sight:
     x h from the end: a pair that it parts there counts with 1 − χ, a dummy with χ. Else pairs come and go at once as
     the line between them passes the end, with forces of many weights, and still water stirs itself for ever: beside a
     baffle of half its depth, 15 layers, to 0.2 m/s (r.m.s.), where it rests now. Over half of h it begins to move after
-    3 s, over three halves it rests as well. Organ, Fleming, Terry & Belytschko (1996) do so for cracks in solids
-    ("transparency").
+    3 s, over three halves it rests as well. After the transparent tips of cracks of Organ, Fleming, Terry & Belytschko
+    (1996), Comput. Mech. 18, 225, who lengthen distances there instead.
     """
 
     def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int):
