@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from multiprocessing import active_children, get_context, parent_process
 from multiprocessing.connection import wait as wait_for
 from pathlib import Path
@@ -62,7 +63,8 @@ def _by_workers(batches: Mapping[Path, Batch], cores: int, progress: Progress) -
                     yield folder
         except BaseException as error:
             for worker in active_children():
-                os.kill(worker.pid, signal.SIGINT)
+                with suppress(ProcessLookupError):  # it may have ended meanwhile
+                    os.kill(worker.pid, signal.SIGINT)
             if isinstance(error, BrokenProcessPool):
                 raise LabError(f"{BROKEN}: run the command again to continue.") from None
             raise

@@ -296,7 +296,7 @@ def test_a_run_with_damage_after_its_checkpoint_continues_with_the_same_bits(don
 def flip(folder: Path, name: str, row: int) -> None:
     """Flip a bit of a row of a data set, behind HDF5's back."""
     path = folder / "recording.h5"
-    with h5py.File(path) as file:
+    with h5py.File(path, swmr=True) as file:  # as a kill leaves it
         data = file[name]
         chunk = data.id.get_chunk_info(row // data.chunks[0])
         at = chunk.byte_offset + row % data.chunks[0] * int(np.prod(data.shape[1:])) * data.dtype.itemsize
