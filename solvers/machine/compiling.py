@@ -44,7 +44,8 @@ def compute_once() -> None:
 
     Taichi 1.7.4 writes it out for each component: `volume[j] * lanes` reads the array 16 times, until LLVM finds that
     all are the same. That was half of the statements of a kernel of water, and its compiler walks through all of them
-    for each one that it replaces. Such a kernel now compiles in three fifths of the time; it runs as before.
+    for each one that it replaces. Such a kernel now compiles in three fifths of the time. A step costs the same
+    within the scatter of its timings, 5 % and, with air, 15 %.
     """
     from taichi.lang import ops
 

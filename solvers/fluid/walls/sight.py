@@ -34,6 +34,8 @@ class Sight:
     baffle of half its depth, 15 layers, to 0.2 m/s (r.m.s.), where it rests now. Over half of h it begins to move after
     3 s, over three halves it rests as well. After the transparent tips of cracks of Organ, Fleming, Terry & Belytschko
     (1996), Comput. Mech. 18, 225, who lengthen distances there instead.
+
+    Limits: so a plate is shorter by some h/2 at a free end, at once when the end leaves a wall, as a gate's does.
     """
 
     def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int):
