@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -10,8 +10,6 @@ from scipy.optimize import least_squares
 from lab.preset.outline import rectangle
 from lab.studies.case import Line
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
-from solvers.fluid.phases.adiabatic import background
-from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -138,13 +136,3 @@ def order_line(what: str, spacings: Sequence[float], errors: Sequence[float], no
     reason = "second order inside, first at walls and surfaces, and what disorder leaves"
     name = f"order of the error of {what}"
     return [Line(name, order(spacings, errors), 2.0, "second order of the scheme", 1.0, reason, relative=False)]
-
-
-def of_both(water: Water, outline: np.ndarray, depth: float) -> Scene:
-    """A closed tank with a depth (m) of water and air over it, at rest."""
-    return scene(water, with_air(at_rest(outline, depth, water, G), air_above(outline, depth, water, G))[None], outline)
-
-
-def bearing(water: Water, over: float = 0.0) -> Water:
-    """A water with the background pressure that presets have, under air of a height (m)."""
-    return replace(water, background=background(water.air, water, water.air.density * G * over))
