@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import taichi as ti
 
 from solvers.fluid.checks import residual
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Gauge, Level
@@ -35,6 +36,18 @@ def held(run: Simulation) -> list[np.ndarray]:
     y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.excess, p.mass, *p.acceleration, *p.slope)
     pairs = [np.stack(pair, axis=-1)[0] for pair in ((y, z), (v, w), rest[0:2], rest[2:4])]
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
+
+
+NEIGHBOURS = 50  # π (2 h)²/Δx² with h = 2 Δx
+# What a sum over neighbours of 32-bit numbers x may be off, of Σ|x|: n u (Higham 2002, eq. 4.4)
+ROUNDING = NEIGHBOURS * 2.0**-24
+# Σ|x| of the accelerations by single neighbours, of g: 2 p/ρ ∫ |∇W| = 14 p/(3 ρ h) of Wendland's C2, at half the depth
+CANCELLED = 7.0 / 3.0 * ROWS / 2.0
+
+
+def to_digits(run: Simulation, double: float, single: float) -> float:
+    """The tolerance for numbers of 64 bits, or that for those of 32."""
+    return single if run.water.particles.real == ti.f32 else double
 
 
 def upset(run: Simulation, number: int, fields, values) -> None:
@@ -95,8 +108,8 @@ def test_the_load_is_what_the_water_loses(run):
     load = run.observe()["wall_force"][0, :2]
     change = mass @ (held(run)[1] - before)
     weight = np.array([0.0, -GRAVITY * mass.sum()])
-    scale = steps * run.dt * np.abs(load).max()
-    np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=1e-12 * scale)
+    scale, digits = steps * run.dt * np.abs(load).max(), to_digits(run, 1e-12, ROUNDING * CANCELLED)
+    np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=digits * scale)
 
 
 def test_the_loads_on_all_edges_are_the_load_on_the_tank(run):
@@ -105,7 +118,8 @@ def test_the_loads_on_all_edges_are_the_load_on_the_tank(run):
     run.advance(20)
     rows = run.observe()
     edges, load = rows["edge_force"][0], rows["wall_force"][0, :2]
-    np.testing.assert_allclose(edges.sum(axis=0), load, atol=1e-10 * np.abs(edges).max())
+    digits = to_digits(run, 1e-10, 2.0 * ROUNDING)  # of two sums
+    np.testing.assert_allclose(edges.sum(axis=0), load, atol=digits * np.abs(edges).max())
     assert edges[0, 1] < 0.9 * load[1] < 0.0 < edges[1, 0]
     np.testing.assert_array_equal(edges[2], 0.0)
 
@@ -197,7 +211,8 @@ def test_gravity_may_change_while_water_runs(run):
 def test_water_at_rest_weighs_on_the_floor_and_its_gauges(run):
     """From hydrostatic rest: pressures, levels and the load stay; c0 = 10 √(gH) compresses the water by up to 1 %.
 
-    A wall bears ρ g H²/2, the floor the water's weight; H is known to the 1 % of its level.
+    The floor bears the water's weight, a wall ρ g H²/2 less what dummies beyond its corner bear, which count to the
+    floor: with squares of dummies, at most half a spacing of the pressure at its foot.
     """
     again(run, still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD))
     run.observe()
@@ -209,8 +224,8 @@ def test_water_at_rest_weighs_on_the_floor_and_its_gauges(run):
     np.testing.assert_allclose(rows["level_depth"][0], DEPTH, rtol=0.01)
     side = 0.5 * 1000.0 * GRAVITY * DEPTH**2
     floor, right, _, left = rows["edge_force"][0]
-    print(rows["edge_force"][0], side, mass * GRAVITY)  # XXX
-    np.testing.assert_allclose([right[0], -left[0]], side, rtol=0.02)
+    corner = 1000.0 * GRAVITY * DEPTH * 0.5 * DEPTH / ROWS
+    np.testing.assert_allclose([right[0], -left[0]], side - 0.5 * corner, atol=0.5 * corner)
     np.testing.assert_allclose(floor[1], -mass * GRAVITY, rtol=2e-3)
     assert rows["water_kinetic"][0] < 1e-4 * 1000.0 * GRAVITY * DEPTH * WIDTH * DEPTH
     place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
@@ -280,11 +295,17 @@ def test_a_wall_pushes_back_what_has_come_through_its_face(run, deep):
     ],
 )
 def test_other_ways_of_running_give_the_same_water(course, changes):
-    """Numbers of 32 bits, bands on threads, and particles one by one: the same course, to the rounding of each."""
+    """Numbers of 32 bits, bands on threads, and particles one by one: the same course, to the rounding of each.
+
+    Those one by one in two worlds, whose first has another course: they do not feel each other.
+    """
     units = {"units": 2} if changes == {"schedule": "per-band"} else {}
-    other = Simulation(disturbed(3, **UNTOLD | changes), threads=1 + len(units), arch="cpu", **units)
+    scenes = [disturbed(seed, **UNTOLD | changes) for seed in ((4, 3) if "f32" in changes.values() else (3,))]
+    other = Simulation(Scene.joined(scenes), threads=1 + len(units), arch="cpu", **units)
     other.advance(60)
-    place, spacing, precision = other.snapshot()["water_place"][0], other.scene.water.spacing, other.scene.precision
+    places, spacing, precision = other.snapshot()["water_place"], other.scene.water.spacing, other.scene.precision
+    place = places[-1]
+    assert len(places) == 1 or np.abs(places[0] - place).max() > 0.05 * spacing
     other.close()
     tight = {"f64": 1e-9, "mixed": 2e-5, "f32": 5e-4}[precision]
     np.testing.assert_allclose(place, course, atol=tight * spacing)
