@@ -107,11 +107,12 @@ def test_what_is_no_number_stops_the_run():
     assert "y = 0.4 m, z = 0.1 m" in refused(refuse_state, 1, broken, 1.5, 17.0)
 
 
-@pytest.mark.parametrize(("span", "most"), [(1.0, DENSEST), (0.5 * INSIDE, DENSEST_SPRAY)])
-def test_spray_and_the_surface_may_be_squeezed_more_than_water_within(span, most):
+@pytest.mark.parametrize(("whose", "other"), [("within", "spray"), ("spray", "within")])
+def test_spray_and_the_surface_may_be_squeezed_more_than_water_within(whose, other):
     """The one is named that is farthest beyond what it may be, not the one that is squeezed most."""
-    excess = np.array([0.0, 0.0, 1.01 * most, 0.0, 0.8 * most])
-    spans = np.array([1.0, 1.0, span, 1.0, span])
+    span, most = {"within": 1.0, "spray": 0.5 * INSIDE}, {"within": DENSEST, "spray": DENSEST_SPRAY}
+    excess = np.array([0.0, 0.0, 1.01 * most[whose], 0.0, 0.9 * most[other]])
+    spans = np.array([1.0, 1.0, span[whose], 1.0, span[other]])
     fine = {"place": PLACES, "speed": np.zeros(5), "gas": np.zeros(5), "spilled": np.zeros(5, dtype=bool)}
     said = refused(refuse_state, 1, {**fine, "excess": excess, "span": spans}, 1.5, 17.0)
-    assert f"off by {101.0 * most:.3g} % at y = 0.4 m" in said
+    assert f"off by {101.0 * most[whose]:.3g} % at y = 0.4 m" in said
