@@ -32,6 +32,16 @@ def test_finite_elements_find_the_flow_of_a_box():
     np.testing.assert_allclose(found * np.sign(found[0, 0]), exact, atol=0.01)
 
 
+def test_the_walls_over_the_earth_move_as_fast_as_their_places_say():
+    """Velocity and acceleration are the derivatives of place and angle; the tank starts at rest."""
+    step, time = 1e-5, 0.07
+    before, now, after = (balance.over_earth(time + k * step) for k in (-1, 0, 1))
+    for place, speed in (("origin", "velocity"), ("angle", "rate"), ("velocity", "acceleration"), ("rate", "gain")):
+        slope = (getattr(after, place) - getattr(before, place)) / (2.0 * step)
+        np.testing.assert_allclose(getattr(now, speed), slope, rtol=1e-6)
+    assert np.abs(balance.over_earth(0.0).velocity).max() < 1e-12
+
+
 @pytest.mark.parametrize(("depth", "cut", "rate"), CUTS)
 def test_slanted_corners_slow_the_water(depth, cut, rate):
     """Hz, by another finite-element program."""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lab.studies.verify.plain_water import EarthWater, Pose
 from solvers.fluid.checks import residual
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Gauge, Level
 from solvers.fluid.surface.fullness import PACKED, RAMP
@@ -75,6 +76,32 @@ def test_a_step_equals_double_sums(run):
     run.advance(7)
     full = check_a_step(run)
     assert full.min() > PACKED  # at the surface and in corners, too
+
+
+def test_water_in_a_swayed_tank_is_that_between_walls_that_move_over_the_earth(run):
+    """Steps in the tank's frame, by the same kernels with another sway, against double sums in the earth's.
+
+    A wall's acceleration, its velocity, and how far water slides along it, all count there.
+    """
+    sway, rate = Sway(0.05, 1.1, 0.5 * np.pi), 2.2 * np.pi
+
+    def pose(time: float) -> Pose:
+        over = sway.amplitude * np.array([np.cos(rate * time), 0.0])
+        along = sway.amplitude * np.array([-rate * np.sin(rate * time), 0.0])
+        return Pose(over, 0.0, along, 0.0, -(rate**2) * over, 0.0)
+
+    table, at_rest = run.carrier.table, run.carrier.table.to_numpy()
+    table.from_numpy(np.array([[0.0, 0.0, *sway.parameters(0.0)]], dtype=at_rest.dtype))
+    again(run, disturbed(4)).advance(1)  # the first kick is half a step long
+    plain = EarthWater(run.scene, pose)
+    r, u, s, mass, *_ = held(run)
+    r = pose(run.time).places(r)
+    for _ in range(3):
+        r, u, s = plain.step(r, u, s, mass, run.time, run.dt)
+        run.advance(1)
+    found = pose(run.time).places(held(run)[0])
+    table.from_numpy(at_rest)
+    np.testing.assert_allclose(found, r, atol=1e-11)
 
 
 def test_the_load_is_what_the_water_loses(run):

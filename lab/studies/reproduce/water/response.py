@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 from lab.measures.driven_load import transfer
 from lab.measures.steady import harmonics, steady_part
-from lab.preset.sections.water.liquid import depth
+from lab.preset.sections.water.liquid import depth, spacing
 from lab.report.plots import BELOW, BLUE, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Found, Row, Told
@@ -119,15 +119,16 @@ def first_mode(found: Response, near: float) -> tuple[float, float]:
 
 
 def tell(found: Found) -> Told:
-    """The first mode and the loads of each run beside linear theory."""
+    """The first mode and the loads of each run beside linear theory; the verdicts are on the finest run."""
     runs = {label: response(outcomes) for label, outcomes in found.items()}
     theory = tank(next(iter(found.values()))[0])
-    rows = [row for label, one in runs.items() for row in _rows(label, one, theory)]
+    finest = min(found, key=lambda label: spacing(found[label][0].recording.preset))
+    rows = [row for label, one in runs.items() for row in _rows(label, one, theory, label == finest)]
     return Told(rows, _figure(runs, theory), _table(runs, theory))
 
 
-def _rows(label: str, one: Response, theory: Tank) -> list[Row]:
-    """A run's first mode, and its loads away from it."""
+def _rows(label: str, one: Response, theory: Tank, judged: bool) -> list[Row]:
+    """A run's first mode, and its loads away from it; with verdicts, if `judged`."""
     linear, near = theory.response(one.omega), float(theory.liquid.rates[0])
     (own, decay), (exact, lost) = first_mode(one, near), first_mode(linear, near)
     rows = []
@@ -138,7 +139,7 @@ def _rows(label: str, one: Response, theory: Tank) -> list[Row]:
         off = ours / wanted - 1.0
         apart, allowed = f"{100.0 * off:+.2f} %", f"{100.0 * within:g} %: {ASKED}"
         told = f"{wanted:.4g} {unit}", f"{ours:.4g} {unit}", apart, allowed
-        rows.append(Row(f"{name}, {label}", *told, _verdict(abs(off) <= within)))
+        rows.append(Row(f"{name}, {label}", *told, _verdict(abs(off) <= within) if judged else None))
     away = np.abs(one.omega / near - 1.0) > APART
     mass = theory.liquid.mass
     for name, ours, wanted in (
@@ -148,7 +149,7 @@ def _rows(label: str, one: Response, theory: Tank) -> list[Row]:
         off = (np.abs(ours - wanted) / mass)[away].max()
         quantity = f"{name}, {100.0 * APART:.0f} % and more off that frequency, largest difference, {label}"
         told = "", f"{100.0 * off:.3g} % of the liquid's mass", "", f"{100.0 * LOAD:g} %: {ASKED}"
-        rows.append(Row(quantity, *told, _verdict(off <= LOAD)))
+        rows.append(Row(quantity, *told, _verdict(off <= LOAD) if judged else None))
     return rows
 
 
