@@ -114,9 +114,9 @@ def test_a_strained_drop_passes():
     assert found.lines and all(line.passed for line in found.lines)
 
 
-def test_a_free_drop_keeps_its_momentum():
+def test_a_drop_that_falls_gains_momentum_as_its_weight_says():
     """The cheapest case that runs water; the others are run by `test_fast_cases_pass_and_leave_a_page`."""
-    assert balance.free_drop().passed
+    assert balance.free_drop(balance.G).passed
 
 
 def test_every_case_of_water_says_so():
