@@ -32,6 +32,12 @@ def test_a_drop_starts_with_its_flow_and_the_pressure_that_this_takes():
     assert expected_speed(preset) == pytest.approx(0.1 * (2.0 + 3.0))
 
 
+def test_a_drop_takes_the_place_of_the_depth_of_its_base():
+    preset = wet(water__radius="100 mm", water__centre=["0 mm", "250 mm"])
+    assert preset.water.depth is None and preset.water.radius == pytest.approx(0.1)
+    assert wet(water__region=COLUMN, water__depth=False).water.radius is None
+
+
 def test_a_drop_with_weight_falls_without_pressure():
     drops = drops_of(wet(**DROP | {"run__gravity": "9.81 m/s^2"}))
     assert not drops[:, EXCESS].any() and not drops[:, VELOCITY_Y].any()
