@@ -11,7 +11,7 @@ ALTERNATIVES = {
     "grains": ({"count"}, {"depth"}),
     "material": ({"restitution"}, {"dissipative_time"}),
     "wall": ({"restitution"}, {"dissipative_time"}),
-    "water": ({"depth"}, {"region"}, {"radius", "centre"}),
+    "water": ({"depth"}, {"region"}, {"radius"}),
     "ship": ({"gyradius"}, {"roll_period"}),
 }
 
