@@ -152,7 +152,7 @@ def expected_speed(preset: Wet) -> float:
 
 def centre_of_flow(preset: Wet) -> tuple[float, float]:
     """The point (m) that water is strained from, turns about and is pulled to."""
-    return preset.water.flow.centre or moments(bounds(preset)[0])[1]
+    return preset.water.flow.centre or preset.water.centre or moments(bounds(preset)[0])[1]
 
 
 def flow_speed(preset: Wet) -> float:
