@@ -58,7 +58,7 @@ def _flow(preset: Preset) -> str:
     parts = [f"{words} {show(value, unit)}" for words, (value, unit) in told.items() if value]
     if flow.pull:
         y, z = (show(round(x, 9), "m") for x in centre_of_flow(preset))
-        parts.append(f"pulled by Ω² r, Ω = {show(flow.pull, 'rad/s')}, to [{y}, {z}]")
+        parts.append(f"pulled by Ω² r, Ω = {flow.pull:g} rad/s, to [{y}, {z}]")
     return ", ".join(parts) or "none"
 
 
