@@ -97,8 +97,14 @@ def deep(points: np.ndarray, along: np.ndarray, corners: np.ndarray) -> np.ndarr
 
 def straight(points: np.ndarray, along: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
     """`along` (n, 2) of dummies at `points` (n, 2) m, zero near the `corners` (m, 2) m; `reach` (m) is the kernel's."""
-    away = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1)
+    away = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1, initial=np.inf)
     return along * (away > FAR * reach)[:, None]
+
+
+def reentrant(corners: np.ndarray) -> np.ndarray:
+    """Those corners (k, 2) of a counter-clockwise polygon (m, 2) m that point into it."""
+    before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+    return corners[before[:, 0] * after[:, 1] < before[:, 1] * after[:, 0]]
 
 
 def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:

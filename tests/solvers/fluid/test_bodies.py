@@ -131,6 +131,18 @@ def test_a_plate_is_as_tight_as_a_wall():
     np.testing.assert_allclose(runs[0].observe()["part_force"][0, 0, 0], wanted, rtol=0.03)
 
 
+@pytest.mark.parametrize(("name", "most"), [("level", 3e-3), ("afloat", 3e-3)])
+@pytest.mark.slow
+def test_still_water_beside_a_plate_with_a_free_end_stays_at_rest(name, most):
+    """R.m.s. speed (m/s) after 4 s from a square lattice; packed water in a box without plates has 1.7 mm/s then."""
+    plate = {"level": Body(((-0.3, 0.16), (-0.2, 0.16))), "afloat": Body(((0.0, 0.08), (0.0, 0.2)))}[name]
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
+    drops = drops[:, clear_of(drops[0, :, :2], (plate,), SPACING)]
+    run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, parts=(plate,), drops=drops, alpha=0.02), threads=1, arch="cpu")
+    run.advance(round(4.0 / run.dt))
+    assert np.sqrt((run.snapshot()["water_velocity"][0] ** 2).sum(axis=1).mean()) < most
+
+
 @pytest.mark.slow
 def test_a_swaying_cylinder_has_the_added_mass_of_potential_theory():
     """In a full round tank: ρ π a² (b² + a²)/(b² − a²) (Lamb 1932, art. 68), to 8 % with 16 spacings across."""
