@@ -17,8 +17,8 @@ OF_NONE = -1  # the edge of probes, which are no part of a wall
 class Behind:
     """Dummies and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
 
-    `straight` (n, 2) are unit vectors along the faces before them (`faces`) away from all corners, `sliding` (n, 2)
-    those away from corners that point into the water, zero of all others and of probes.
+    `along` (n, 2) are unit vectors along the faces before them (`faces`), zero of probes; `straight` (n, 2) are those
+    away from all corners, `sliding` (n, 2) those away from corners that point into the water, else zero.
     An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
     numbers, `open` what dummies leave of their kernels. Gauges are in the first tank that has water. `fills` are the
     numbers of particles in each tank; none stands behind a dry one.
@@ -29,12 +29,13 @@ class Behind:
         self.open: list[np.ndarray] = []
         self.points, self.volumes, self.firm = np.zeros((0, 2)), np.zeros(0), np.zeros(0)
         self.edges, self.tanks = np.zeros(0, dtype=int), np.zeros(0, dtype=int)
-        self.straight = self.sliding = np.zeros((0, 2))
+        self.along = self.straight = self.sliding = np.zeros((0, 2))
         wet = [number for number, fill in enumerate(fills) if fill]
         for number in wet if water.walls else ():
             points, volumes, depths = _round(water, tanks[number])
             self._add(points, volumes, edge_of(points, tanks[number].outline), number)
             along = faces(points, tanks[number].outline)
+            self.along = np.concatenate([self.along, along])
             away = straight(points, along, tanks[number].outline, water.reach)
             self.straight = np.concatenate([self.straight, away])
             ends = reentrant(tanks[number].outline)
@@ -52,7 +53,7 @@ class Behind:
             self.open.append(1.0 - covered(of_gauge, points, volumes, water))
             none = np.zeros(len(of_gauge))
             self._add(of_gauge, none, np.full(len(of_gauge), OF_NONE), wet[0])
-            self.firm = np.append(self.firm, none)
+            self.firm, self.along = np.append(self.firm, none), np.concatenate([self.along, 0.0 * of_gauge])
             self.straight = np.concatenate([self.straight, 0.0 * of_gauge])
             self.sliding = np.concatenate([self.sliding, 0.0 * of_gauge])
 
