@@ -91,7 +91,7 @@ class WaterMatter(Matter):
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = pace.first(self._before()), pace.last([Phase(self.note_passage)])
-        closing = [Closing(arrays, medium, behind, dummy, lean).close] if self.continuity.closes else []
+        closing = [Closing(arrays, medium, behind, dummy).close] if self.continuity.closes else []
         acts = self.mover.kick, *closing, self.continuity.expand, self.finish
         self.after = pace.last(Phase(act, units) for act in acts)
 

@@ -7,7 +7,7 @@ import numpy as np
 from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.gauges import probes
-from solvers.fluid.walls.layers import edge_of, faces, firm, layers, reentrant, straight
+from solvers.fluid.walls.layers import edge_of, faces, firm, layers, sharp, straight
 from solvers.space.axes import NAMES
 from solvers.tank.tank import Tank
 
@@ -18,7 +18,7 @@ class Behind:
     """Dummies and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
 
     `along` (n, 2) are unit vectors along the faces before them (`faces`), zero of probes; `straight` (n, 2) are those
-    away from all corners, `sliding` (n, 2) those away from corners that point into the water, else zero.
+    away from all corners, `sliding` (n, 2) those away from `sharp` corners, which point into the water, else zero.
     An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
     numbers, `open` what dummies leave of their kernels. Gauges are in the first tank that has water. `fills` are the
     numbers of particles in each tank; none stands behind a dry one.
@@ -38,7 +38,7 @@ class Behind:
             self.along = np.concatenate([self.along, along])
             away = straight(points, along, tanks[number].outline, water.reach)
             self.straight = np.concatenate([self.straight, away])
-            ends = reentrant(tanks[number].outline)
+            ends = sharp(tanks[number].outline)
             self.sliding = np.concatenate([self.sliding, straight(points, along, ends, water.reach)])
             hold = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
             self.firm = np.append(self.firm, hold)

@@ -5,7 +5,6 @@ import taichi as ti
 
 from solvers.fluid.lists import Medium
 from solvers.fluid.walls.behind import Behind
-from solvers.fluid.walls.lean import Lean
 from solvers.machine.state import State, padded
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot, named
@@ -24,11 +23,11 @@ class Closing:
 
     U_w also slides with the water, by the mean of its velocity along the face, Σ V_f u_f W / Σ V_f W. Else water that
     rises along a wall would be compressed near its surface, where the sum of ∇W leans. The adjoint of this is `Lean`,
-    which takes the push along the face off. So U_w does not slide near the free ends of plates, corners that point into
-    the water, and walls near parts, where that push stays: water that goes round such an end would be driven by what
-    slides without an adjoint, and still water stirred itself for ever, to 20 to 90 mm/s (r.m.s., 15 layers). In the
-    corners of a tank, where no water goes round, it slides: the walls bear each other's pushes (`Lean`). A dummy whose
-    pressure is cut off compresses nothing. Air has a wall
+    which takes the push along the face off. So U_w does not slide near free ends of plates and sharp corners that point
+    into the water, where that push stays: water that goes round such an end would be driven by what slides without an
+    adjoint, and still water stirred itself for ever, to 20 to 100 mm/s (r.m.s., 15 layers). In other corners, where no
+    water goes round, and beside smooth bodies it slides, though that push stays there, too: static dummies compress
+    what rises along them. A dummy whose pressure is cut off compresses nothing. Air has a wall
     pressure of its own, 2 p_i, and a wall's velocity of weight 2 as its adjoint, see
     `solvers.fluid.phases.interfaces`.
 
@@ -38,14 +37,14 @@ class Closing:
     four spacings with it.
     """
 
-    def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray, lean: Lean):
+    def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray):
         """`slots` are where the points of `behind` are among the lanes of the walls."""
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.bodies, self.lean, p = medium.lists.bodies, lean, medium.particles
+        self.bodies, p = medium.lists.bodies, medium.particles
         tank = np.zeros(((p.walls - self.bodies.rows) * p.lanes, 2))
         tank[slots] = behind.sliding
-        along = np.concatenate([tank.reshape(-1, p.lanes, 2), self.bodies.solids.straight])
+        along = np.concatenate([tank.reshape(-1, p.lanes, 2), self.bodies.solids.sliding])
         own = arrays.under("water.closing")
         self.along = [
             own.holding(name, padded(along[..., a], max(p.dry, 1)), "row lane")
@@ -91,8 +90,8 @@ class Closing:
         if ti.static(self.bodies.moving):
             self.bodies.turn(b, along, AT_MIDDLE)
         slid = (few * dot(moved, along)) * dot(along, steep)
-        if ti.static(self.bodies.count > 0 and self.lean.acts):
-            slid *= self.lean.clear(b, along)
+        if ti.static(len(self.bodies.sight.plates) > 0):
+            slid *= self.bodies.sight.off_ends(b, AT_MIDDLE)
         closed = closed - slid
         # A pressure that is cut off, or of a dummy that sees no water, is exactly zero.
         pressure = p.load(p.pressure, b)
