@@ -3,14 +3,29 @@
 import numpy as np
 import pytest
 
-from lab.studies.verify.water import CASES, air, balance, bubbles, drops, patch, rest, sloshing, vortices, waves
+from lab.studies.verify.water import (
+    CASES,
+    air,
+    balance,
+    bubbles,
+    drops,
+    orifice,
+    patch,
+    rest,
+    sloshing,
+    vortices,
+    waves,
+)
 from lab.studies.verify.water.laplace import first_mode
 from lab.studies.verify.water.scenes import Swing, box, chamfered, order, order_line, swing
 from lab.studies.verify.water.vorticity import middle_pressure
 from solvers.fluid.start.rest import STARTS
 
 WIDTH, DEPTH = 0.30, 0.105  # m
-CUTS = (0.0525, 0.045, 1.126), (0.105, 0.05, 1.435), (0.105, 0.075, 1.403)
+CUTS = (
+    *((0.0525, 0.03, 1.138), (0.0525, 0.045, 1.126), (0.0525, 0.05, 1.117)),
+    *((0.105, 0.04, 1.440), (0.105, 0.05, 1.435), (0.105, 0.06, 1.427), (0.105, 0.075, 1.403)),
+)
 
 
 def test_finite_elements_have_the_closed_form_of_a_box():
@@ -72,6 +87,26 @@ def test_the_axes_of_a_drop_are_those_of_the_literature():
     np.testing.assert_allclose(round_again, 1.0, atol=2e-3)
     swung = drops.exact(1.0, 1.0, np.linspace(0.0, drops.PERIOD, 2001)[1:])[:, 0]
     np.testing.assert_allclose([swung.min(), swung.max()], drops.EXTREMES, rtol=1e-4)
+
+
+@pytest.mark.parametrize(("share", "narrowest"), [(0.1, 0.612), (0.2, 0.616), (0.3, 0.622), (0.5, 0.644)])
+def test_the_contraction_of_a_slot_is_that_of_the_literature(share, narrowest):
+    """Von Mises (1917), as in handbooks of hydraulics; π/(π + 2) in a wide floor (Kirchhoff 1869)."""
+    assert orifice.contraction(share) == pytest.approx(narrowest, abs=6e-4)
+    assert orifice.contraction(1e-6) == pytest.approx(np.pi / (np.pi + 2.0), rel=1e-5)
+
+
+def test_a_tank_empties_as_its_balance_says():
+    """B dh/dt = −δ V with V² = 2 g h + (dh/dt)², in small steps; and C_d and the time are found again in its depths."""
+    narrowest = orifice.contraction(orifice.SLOT / orifice.WIDTH) * orifice.SLOT
+    depth, step, course = orifice.FULL, 1e-4, [orifice.FULL]
+    while depth > orifice.LOW:
+        jet = np.sqrt(2.0 * 9.81 * depth / (1.0 - (narrowest / orifice.WIDTH) ** 2))
+        depth -= step * jet * narrowest / orifice.WIDTH
+        course.append(depth)
+    emptied = orifice.Outflow(step * np.arange(len(course)), np.array(course), np.ones(len(course)))
+    assert emptied.coefficient == pytest.approx(orifice.discharge(), rel=1e-3)
+    assert emptied.lasting == pytest.approx(orifice.emptying(orifice.discharge(), orifice.HIGH, orifice.LOW), rel=1e-3)
 
 
 def test_a_viscous_wave_decays_as_lamb_says(monkeypatch):

@@ -7,7 +7,18 @@ from scipy.integrate import solve_ivp
 
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.water.drawing import courses
-from lab.studies.verify.water.scenes import LATTICE, box, filled, looks, order_line, scene, seen, simulated, swing
+from lab.studies.verify.water.scenes import (
+    LATTICE,
+    box,
+    errors_note,
+    filled,
+    looks,
+    order_line,
+    scene,
+    seen,
+    simulated,
+    swing,
+)
 from solvers.fluid.given import VOLUME, Pull, Water
 from solvers.fluid.start.packing import packed
 
@@ -22,6 +33,7 @@ LOUD = 20.0  # m/s: c0 of pulled drops, 14 times their fastest water
 PERIODS, A_PERIOD = 2.0, 40  # looks
 EXTREMES = (0.5176, 1.9319)  # m
 PERIOD = 4.827 / RATE  # s, of a start with σ0 = Ω
+EACH = "particles across"
 SOURCE = "two equations for the axes"
 FORM = "shape to a spacing's share, compressibility (speed/c0)² ≈ 0.5 %"
 
@@ -86,12 +98,14 @@ def ellipse(fast: bool) -> Found:
         Line("shorter half axis at 7.6 ms", last[1], AXES[1], SOURCE, allowed, FORM, "m"),
     ]
     spacings = [2.0 * RADIUS / count for count in counts]
+    note = f"""c0 = 1400 m/s, 14 times the fastest water; the exact half axes at the step nearest to 7.6 ms are
+    {wanted[0]:.4f} and {wanted[1]:.4f} m."""
+    notes = [note]
     for k, name in enumerate(("longer", "shorter")):
         errors = [run.axes[-1, k] / exact(STRAIN, 0.0, run.time)[-1, k] - 1.0 for run in runs]
         lines += order_line(f"the {name} half axis", spacings, errors, LATTICE)
-    note = f"""c0 = 1400 m/s, 14 times the fastest water; the exact half axes at the step nearest to 7.6 ms are
-    {wanted[0]:.4f} and {wanted[1]:.4f} m."""
-    return Found(lines, notes=[note])
+        notes += errors_note(f"The {name} half axis", counts, EACH, errors)
+    return Found(lines, notes=notes)
 
 
 def pulled(fast: bool) -> Found:
@@ -112,10 +126,17 @@ def pulled(fast: bool) -> Found:
         *order_line("the period", spacings, [one / PERIOD - 1.0 for one in found], LATTICE),
         *order_line("the energy", spacings, [run.lost[-1] for run in runs], 2e-3),
     ]
+    shown = {
+        "Period": [one / PERIOD - 1.0 for one in found],
+        "Longest half axis": [run.axes[:, 0].max() / EXTREMES[1] - 1.0 for run in runs],
+        "Shortest half axis": [run.axes[:, 0].min() / EXTREMES[0] - 1.0 for run in runs],
+        "Energy lost in a period": [run.lost[-1] / periods for run in runs],
+    }
+    notes = [note for what, errors in shown.items() for note in errors_note(what, counts, EACH, errors)]
     curves = {f"{count} across": (run.time, run.axes[:, 0]) for count, run in zip(counts, runs, strict=True)}
     curves["exact"] = (times, exact(RATE, RATE, times)[:, 0])
     caption = "Half axis along y of a drop pulled to a point, σ0 = Ω = 1/s."
-    return Found(lines, [Picture("water-drop", courses(curves, ("time (s)", "half axis (m)")), caption)])
+    return Found(lines, [Picture("water-drop", courses(curves, ("time (s)", "half axis (m)")), caption)], notes)
 
 
 def length(run: Course) -> float:
@@ -137,11 +158,12 @@ def small(fast: bool) -> Found:
         gap = run.axes[:, 0] - run.axes[:, 1]
         found.append(2.0 * np.pi / swing(run.time, gap, np.sqrt(2.0) * RATE).rate)
     spacings = [2.0 * RADIUS / count for count in counts]
+    errors = [one / wanted - 1.0 for one in found]
     lines = [
         Line("period", found[-1], wanted, "2π/(√2 Ω)", 0.02 if fast else 0.01, FORM, "s"),
-        *order_line("the period", spacings, [one / wanted - 1.0 for one in found], LATTICE),
+        *order_line("the period", spacings, errors, LATTICE),
     ]
-    return Found(lines)
+    return Found(lines, notes=errors_note("Period", counts, EACH, errors))
 
 
 CASES = (

@@ -136,3 +136,11 @@ def order_line(what: str, spacings: Sequence[float], errors: Sequence[float], no
     reason = "second order inside, first at walls and surfaces, and what disorder leaves"
     name = f"order of the error of {what}"
     return [Line(name, order(spacings, errors), 2.0, "second order of the scheme", 1.0, reason, relative=False)]
+
+
+def errors_note(what: str, counts: Sequence[int], each: str, errors: Sequence[float]) -> list[str]:
+    """A note of the relative errors at several spacings, with so many particles over `each`; none of one alone."""
+    if len(errors) < 2:
+        return []
+    shown = ", ".join(f"{100.0 * error:.2f} %" for error in errors)
+    return [f"{what}, with {', '.join(map(str, counts))} {each}: {shown}."]

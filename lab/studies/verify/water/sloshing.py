@@ -11,6 +11,7 @@ from lab.studies.verify.water.scenes import (
     G,
     box,
     chamfered,
+    errors_note,
     looks,
     order_line,
     resting,
@@ -51,15 +52,21 @@ class Pool:
 
 BOXES = {
     "0.90 m, 93 mm": Pool(0.90, 0.093, (8, 12, 16)),
-    "0.90 m, 355.6 mm": Pool(0.90, 0.3556, (24,)),
-    "0.30 m, 52.5 mm": Pool(0.30, 0.0525, (16,)),
-    FAST: Pool(0.30, 0.105, (12, 24, 36)),
-    "1.73 m, 600 mm": Pool(1.73, 0.60, (24,)),
+    "0.90 m, 355.6 mm": Pool(0.90, 0.3556, (8, 12, 16)),
+    "0.30 m, 52.5 mm": Pool(0.30, 0.0525, (8, 12, 16)),
+    FAST: Pool(0.30, 0.105, (8, 12, 16)),
+    "1.73 m, 600 mm": Pool(1.73, 0.60, (8, 12, 16)),
+    "S175's tank, 13.7 m, 1.2 m": Pool(13.699, 1.2, (6, 8, 12)),
+    "an FLNG's tank, 0.20 m, 360 mm": Pool(0.20, 0.36, (24, 36, 48)),
 }
 CHAMFERS = {
-    "52.5 mm, chamfers of 45 mm": Pool(0.30, 0.0525, (12, 18, 24), 0.045),
-    "105 mm, chamfers of 50 mm": Pool(0.30, 0.105, (21,), 0.05),
-    "105 mm, chamfers of 75 mm": Pool(0.30, 0.105, (21,), 0.075),
+    "105 mm, chamfers of 50 mm": Pool(0.30, 0.105, (8, 12, 16), 0.05),
+    "105 mm, chamfers of 40 mm": Pool(0.30, 0.105, (8, 12, 16), 0.04),
+    "105 mm, chamfers of 60 mm": Pool(0.30, 0.105, (8, 12, 16), 0.06),
+    "105 mm, chamfers of 75 mm": Pool(0.30, 0.105, (8, 12, 16), 0.075),
+    "52.5 mm, chamfers of 45 mm": Pool(0.30, 0.0525, (6, 9, 12), 0.045),
+    "52.5 mm, chamfers of 30 mm": Pool(0.30, 0.0525, (6, 9, 12), 0.03),
+    "52.5 mm, chamfers of 50 mm": Pool(0.30, 0.0525, (6, 9, 12), 0.05),
 }
 
 
@@ -87,9 +94,7 @@ def compared(pools: dict[str, Pool], fast: bool) -> Found:
         lines.append(Line(name, found[-1] / (2.0 * np.pi), exact / (2.0 * np.pi), source, allowed, WHY, "Hz"))
         errors = [rate / exact - 1.0 for rate in found]
         lines += order_line(f"the frequency, {name}", [pool.depth / count for count in rows], errors, LATTICE)
-        if len(rows) > 1:
-            shown = ", ".join(f"{100 * error:.2f} %" for error in errors)
-            notes.append(f"{name}, with {', '.join(map(str, rows))} layers: {shown}.")
+        notes += errors_note(name, rows, "layers", errors)
     return Found(lines, notes=notes)
 
 
