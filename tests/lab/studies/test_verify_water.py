@@ -133,8 +133,9 @@ def test_the_pressure_of_a_turning_patch_solves_its_equation():
     around = middle + step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
     p = patch.pressure(around)
     assert (p[1:].sum() - 4.0 * p[0]) / step**2 == pytest.approx(2.0 * 1000.0 * patch.RATE**2, rel=0.02)
-    assert np.abs(patch.pressure(np.array([[0.5, 0.1], [-0.2, -0.5]]))).max() < 1e-9
-    assert patch.pressure(np.zeros((1, 2)))[0] < -100.0
+    middle = patch.pressure(np.zeros((1, 2)))[0]
+    assert np.abs(patch.pressure(np.array([[0.5, 0.1], [-0.2, -0.5]]))).max() < -1e-4 * middle
+    assert middle < -100.0
 
 
 def test_a_hole_in_a_patch_is_seen():
