@@ -85,7 +85,10 @@ def test_chamfers_are_told_beside_those_of_50_mm():
         batch = known[label := f"50 %, roll, {size}"]
         found[label] = hit(batch.preset, 1.34, 1015.0, [high] * 9, dict(batch.changes))
     told = experiments("water")["prismatic-chamfer-half"].tell(found)
-    assert [row.ours for row in told.rows] == ["+0 ± 0 Pa; -100 ± 0 Pa; dry", "+0 ± 0 Pa; dry for 190 Pa; dry"]
+    assert [row.ours for row in told.rows] == [
+        "+0 ± 0 Pa (s.e.); -100 ± 0 Pa (s.e.); dry",
+        "+0 ± 0 Pa (s.e.); dry for 190 Pa; dry",
+    ]
     assert told.figure is not None
     assert [row[5] for row in told.table[1:]] == ["1.440 Hz", "1.435 Hz", "1.427 Hz"]
 

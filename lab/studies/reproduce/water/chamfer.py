@@ -19,7 +19,7 @@ from lab.studies.reproduce.water.prismatic import DRY, peak_at
 USUAL = "50 mm"
 GAUGES = (1, 2, 3)
 COLOURS = (GREEN, BLUE, VERMILION)
-HOW = "two standard errors of cycles, taken as independent"
+HOW = "standard error of nine cycles each, taken as independent"
 
 
 def first_mode(one: Outcome) -> float:
@@ -78,7 +78,7 @@ def _change(one: Sequence[Outcome], usual: Sequence[Outcome], gauge: int) -> str
         return DRY
     if own.value is None or other.value is None:
         return f"{_words(own)} for {_words(other)}"
-    return f"{own.value - other.value:+.0f} ± {2.0 * np.hypot(own.uncertainty, other.uncertainty):.0f} Pa"
+    return f"{own.value - other.value:+.0f} ± {np.hypot(own.uncertainty, other.uncertainty):.0f} Pa (s.e.)"
 
 
 def _words(value: Value) -> str:
