@@ -54,11 +54,11 @@ class Simulation:
         stretch: int = 1,
     ):
         self.threads = threads or runtime.available_cores()
-        self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, scene.precision)
+        asked = scene.precision, scene.particles > 0
+        self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, *asked)
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, grains = scene.radius.shape
-        self.scene, self.dt = scene, scene.time_step()
-        self.longest_step = scene.longest_step(1.0)  # s, the limit at set-up
+        self.scene, self.dt, self.longest_step = scene, scene.time_step(), scene.longest_step(1.0)  # s; at set-up
         count = grains + scene.particles
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)

@@ -9,15 +9,11 @@ An impact whose 230 ms are not all recorded is left out.
 
 import numpy as np
 
-from lab.measures.gauges import cycles, key, over_cycles, pressure_gauges
-from lab.measures.motion import driving
-from lab.measures.value import Value, over_worlds
+from lab.measures.gauges import impulse, key, pressure_gauges
+from lab.measures.value import Value
 from lab.recording import Recording
 
 OF = "water"
-BEFORE, AFTER = 0.030, 0.200  # s
-LEAST_SAMPLES = 10  # of an impact
-COARSE = f"no impact is recorded whole by {LEAST_SAMPLES} samples or more"
 
 
 def applies(recording: Recording) -> bool:
@@ -27,28 +23,9 @@ def applies(recording: Recording) -> bool:
 
 def measure(recording: Recording) -> dict[str, Value]:
     """gauge_impulse_NAME (Pa s)."""
-    time, found = recording.series["time"], {}
-    for k, name in enumerate(pressure_gauges(recording)):
-        pressure, peak = recording.series["gauge_pressure"][..., k], recording.series["gauge_peak"][..., k]
-        if driving(recording) is not None:
-            parts = [cycles(recording, one) for one in peak.T]
-            impulses = [_impulses(time, *worlds) for worlds in zip(pressure.T, peak.T, parts, strict=True)]
-            found[key("gauge_impulse", name)] = over_cycles(impulses, "Pa s")[0]
-        else:
-            whole = [slice(0, len(time))]
-            impulses = [_impulses(time, *worlds, whole) for worlds in zip(pressure.T, peak.T, strict=True)]
-            numbers = [values[0] if len(values) else np.nan for values in impulses]
-            found[key("gauge_impulse", name)] = over_worlds(numbers, "Pa s", missing=COARSE)
-    return found
-
-
-def _impulses(time: np.ndarray, pressure: np.ndarray, peak: np.ndarray, parts: list[slice]) -> np.ndarray:
-    """The impulse (C,), Pa s, of the highest peak in each part of a run, of those recorded whole and finely enough."""
-    found = []
-    for rows in parts:
-        top = time[rows.start + int(peak[rows].argmax())]
-        begin, end = np.searchsorted(time, [top - BEFORE - 1e-9, top + AFTER + 1e-9])
-        recorded = time[0] <= top - BEFORE and top + AFTER <= time[-1]
-        if recorded and end - begin >= LEAST_SAMPLES:
-            found.append(np.trapezoid(pressure[begin:end], time[begin:end]))
-    return np.array(found)
+    series = recording.series
+    columns = zip(np.moveaxis(series["gauge_pressure"], -1, 0), np.moveaxis(series["gauge_peak"], -1, 0), strict=True)
+    return {
+        key("gauge_impulse", name): impulse(recording, series["time"], pressure, peak, "Pa s")
+        for name, (pressure, peak) in zip(pressure_gauges(recording), columns, strict=True)
+    }

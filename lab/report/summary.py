@@ -51,12 +51,22 @@ TELLING = (
     "contact_number",
     "gauge_peak_",
     "gauge_largest_",
+    "force_peak_",
+    "force_largest_",
     "sloshing_frequency",
+    "crest_",
     "run_up_",
     "highest_water",
     "gauge_impulse_",
+    "force_impulse_",
     "water_residual",
+    "gauge_mean_",
+    "gauge_std_",
+    "trough_",
     "gauge_peak_scatter_",
+    "force_peak_scatter_",
+    "crest_scatter_",
+    "trough_scatter_",
 )
 HEADLINES, TOLD = 3, 6  # numbers at the head of the page, and in the terminal
 

@@ -39,7 +39,9 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
     place, speed, excess = (particles[name] for name in ("place", "speed", "excess"))
     bad = ~(np.isfinite(speed) & np.isfinite(excess) & np.isfinite(place).all(axis=1))
     if bad.any():
-        what, at = "the state of a particle of water is not a number", place[bad.argmax()]
+        placed = bad & np.isfinite(place).all(axis=1)
+        worst = (placed if placed.any() else bad).argmax()
+        what, at = "the state of a particle of water is not a number", place[worst]
     elif speed.max() >= FASTEST * sound:
         worst = speed.argmax()
         if particles["spilled"][worst]:

@@ -61,19 +61,23 @@ def available_cores() -> int:
     return min(cores, _most_cores)
 
 
-def choose_arch(wanted: str, precision: str) -> str:
+def choose_arch(wanted: str, precision: str, water: bool = False) -> str:
     """The arch to use: for "auto" CUDA, else a Vulkan GPU in hardware, else the CPU; otherwise the one `wanted`.
 
     Taichi's Vulkan backend has no 64-bit functions, so it serves f32 only. Software Vulkan is 5 to 8 times slower than
-    the CPU, so it is used on request only. Raises Unavailable, one sentence, if the wanted arch is not there.
+    the CPU, so it is used on request only. It cannot compile the kernels of particles of water (Taichi 1.7.4; "Value
+    does not yet exist", which is known of other programs, too), so `water` has none. Raises Unavailable, one sentence,
+    if the wanted arch is not there.
     """
     if wanted == "auto":
         if _cuda():
             return "cuda"
-        return "vulkan" if precision == "f32" and _real_vulkan() else "cpu"
+        return "vulkan" if precision == "f32" and not water and _real_vulkan() else "cpu"
     if wanted == "cuda" and not _cuda():
         raise Unavailable("run.arch: there is no CUDA device here; use cpu or auto.")
     if wanted == "vulkan":
+        if water:
+            raise Unavailable("run.arch: Taichi cannot compile water for vulkan; use cuda or cpu.")
         if precision != "f32":
             raise Unavailable('run.arch: vulkan computes in 32 bits only; set run.precision = "f32", or use cpu.')
         if not ti._lib.core.with_vulkan():

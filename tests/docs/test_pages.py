@@ -57,7 +57,7 @@ def test_the_first_preset_is_one_and_its_result_has_what_is_read(tmp_path):
     assert asked and all(f'"{name}"' in sources for name in asked)
 
 
-@pytest.mark.parametrize("name", ["accuracy", "outlines", "speed", "stability", "verify", "water"])
+@pytest.mark.parametrize("name", ["accuracy", "gpu", "outlines", "speed", "stability", "verify", "water"])
 def test_a_kept_page_is_what_its_command_writes_from_the_kept_results(name, tmp_path):
     kept = ROOT / "renders" / "gallery" / "bench"
     shutil.copy(kept / f"{name}.json", tmp_path)

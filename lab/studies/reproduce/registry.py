@@ -12,7 +12,7 @@ from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import breaking, capsizes, coupled, damping, low_sides, rolls, section, tuning
-from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, sinking, surfaces, waves
+from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, response, sinking, surfaces, waves
 
 
 def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[Sequence[Outcome], object], Value]:
@@ -75,4 +75,5 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "convergence": prismatic.convergence,
     "thirty seconds": prismatic.thirty_seconds,
     "repeated impacts": impact.repeats,
+    "response": response.tell,
 }

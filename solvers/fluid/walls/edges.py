@@ -18,6 +18,10 @@ class Edges:
 
     A dummy bears minus what it does to the water (`Forces`), the drag of water that sticks excepted, and belongs to the
     nearest edge. Together the edges bear the load on the tank; each without the pressure of the background.
+
+    Limits: a dummy beyond a corner is as near to both edges, and counts to the first of them with all of its force.
+    So a side of a box lacks 0.35 Δx of the pressure at its foot, which is in the floor's sideways force: at rest 4.7 %
+    of ρ g H²/2 with 15 layers, 70 %/n with n.
     """
 
     def __init__(

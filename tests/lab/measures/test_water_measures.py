@@ -61,6 +61,88 @@ def test_the_impulse_is_the_integral_from_30_ms_before_a_peak_to_200_ms_after_it
     assert of(tmp_path / "late", gauge_pressure=late, gauge_peak=late)["gauge_impulse_P1"].value is None
 
 
+FORCES = {
+    "gauges": {
+        "F-1": {"kind": "force", "place": ["500 mm", "100 mm"]},
+        "F2": {"kind": "force", "place": ["0 mm", "0 mm"]},
+    }
+}
+
+
+def test_the_push_on_an_edge_is_what_is_square_to_it_and_outwards(tmp_path):
+    """Peaks, their scatter, the impulse, the mean and the standard deviation of forces whose numbers are known."""
+    heights = [90.0, 30.0, 40.0, 20.0, 50.0]
+    swing = 8.0 * np.sin(2.0 * np.pi * FREQUENCY * TIME)
+    side = 200.0 + sum(bump(1.0 + 2.0 * k, height) for k, height in enumerate(heights))
+    force = np.stack([np.stack([side, 7.0 + 0.0 * TIME], axis=1), np.stack([swing, -400.0 - swing], axis=1)], axis=1)
+    force[0] = 0.0  # the mean of nothing yet
+    values = of(tmp_path, preset=pool(**DRIVEN, **FORCES), edge_force=force)
+    mean = values["force_peak_F_1"]
+    assert mean.value == pytest.approx(200.0 + np.mean(heights[2:4])) and mean.unit == "N" and mean.note == "2 cycles"
+    scatter = values["force_peak_scatter_F_1"].value
+    assert scatter == pytest.approx(np.std(heights[2:4], ddof=1))
+    assert mean.uncertainty == pytest.approx(scatter / 2**0.5) and mean.kind == "cycles"
+    assert values["force_largest_F_1"].value == pytest.approx(290.0) and values["force_largest_F_1"].note == "at 1 s"
+    whole = 0.230 * 200.0 + 0.02 * np.pi**0.5 * np.mean(heights[2:4])  # of a level push and a bell
+    assert values["force_impulse_F_1"].value == pytest.approx(whole, rel=0.03)
+    assert values["force_impulse_F_1"].unit == "N s"
+    floor, spread = values["gauge_mean_F2"], values["gauge_std_F2"]  # downwards is outwards; sideways is along it
+    assert floor.value == pytest.approx(400.0, abs=0.01) and floor.kind == "averaging" and floor.unit == "N"
+    assert spread.value == pytest.approx(8.0 / 2**0.5, rel=1e-3) and spread.uncertainty < 0.01
+    assert values["force_peak_F2"].value == pytest.approx(408.0, rel=1e-3)
+
+
+def test_the_largest_push_of_a_run_that_nothing_drives(tmp_path):
+    after = np.where((TIME >= 4.0) & (TIME <= 4.5), 50.0 * np.exp(-(TIME - 4.0) / 0.1), 0.0)
+    force = np.zeros((len(TIME), 2, 2))
+    force[:, 0, 0] = after
+    values = of(tmp_path, preset=pool(**FORCES), edge_force=force)
+    assert values["force_largest_F_1"].value == pytest.approx(50.0) and values["force_largest_F_1"].note == "at 4 s"
+    assert values["force_impulse_F_1"].value == pytest.approx(50.0 * 0.1 * (1.0 - np.exp(-2.0)), rel=0.05)
+    assert values["force_largest_F2"].note == "it stays dry" and "force_peak_F_1" not in values
+
+
+def test_crests_and_troughs_are_those_of_cycles_over_the_level_at_the_start(tmp_path):
+    """Of a wave with sharp crests: its second harmonic lifts the trough by as much as the crest."""
+    phase = 2.0 * np.pi * FREQUENCY * TIME
+    rise = np.where(TIME > 0.0, 0.020 * np.cos(phase) + 0.004 * np.cos(2.0 * phase), 0.0)
+    values = of(tmp_path, preset=pool(**DRIVEN), level_depth=(0.2 + rise)[:, None])
+    crest, trough = values["crest_L_1"], values["trough_L_1"]
+    assert crest.value == pytest.approx(24.0, abs=0.01) and crest.note == "3 cycles" and crest.unit == "mm"
+    assert trough.value == pytest.approx(-16.0, abs=0.01) and trough.kind == "cycles"
+    assert max(values[f"{end}_scatter_L_1"].value for end in ("crest", "trough")) < 0.01
+    assert values["gauge_mean_L_1"].value == pytest.approx(200.0, abs=0.05)
+    assert values["gauge_std_L_1"].value == pytest.approx((20.0**2 + 4.0**2) ** 0.5 / 2**0.5, rel=2e-3)
+    calm = of(tmp_path / "b", level_depth=np.full((len(TIME), 1), 0.2))
+    assert "crest_L_1" not in calm and calm["gauge_std_L_1"].value == 0.0
+
+
+def test_the_mean_of_a_pressure_has_the_error_of_its_blocks(tmp_path):
+    """Of noise it is its standard deviation over the root of the number of samples."""
+    noise = np.random.default_rng(1).normal(5000.0, 300.0, (len(TIME), 2))
+    values = of(tmp_path, gauge_pressure=noise)
+    steady = noise[len(TIME) // 2 :, 0]
+    mean, spread = values["gauge_mean_P1"], values["gauge_std_P1"]
+    assert mean.value == pytest.approx(steady.mean()) and mean.unit == "Pa"
+    assert 0.4 < mean.uncertainty / (300.0 / len(steady) ** 0.5) < 1.6
+    assert spread.value == pytest.approx(steady.std()) and spread.kind == "halves"
+
+
+def test_figures_of_gauges_show_what_was_measured(tmp_path):
+    from lab.report.plots import figures
+
+    force = np.zeros((len(TIME), 1, 2, 2))
+    force[:, 0, 0, 0] = 200.0 + sum(bump(1.0 + 2.0 * k, 40.0) for k in range(5))
+    depth = (0.2 + 0.02 * np.cos(2.0 * np.pi * FREQUENCY * TIME))[:, None, None]
+    preset = pool(**DRIVEN, **FORCES)
+    folder = record_pool(tmp_path / "run", TIME, {"edge_force": force, "level_depth": depth}, preset=preset)
+    with open_recording(folder) as recording:
+        drawn = dict(figures(recording, measure_all(recording)))
+    for name, said in (("forces", "mean peak at F-1"), ("crests", "mean trough at L-1"), ("gauges", "mean peak at P1")):
+        texts = [text.get_text() for text in drawn[name].legends[0].get_texts()]
+        assert any(text.startswith(said) for text in texts), texts
+
+
 def test_the_frequency_and_damping_of_a_free_wave(tmp_path):
     frequency, damping = 0.83, 0.01
     omega = 2 * np.pi * frequency

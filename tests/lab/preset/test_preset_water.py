@@ -31,6 +31,11 @@ GRAINS["material"] |= {"poisson": 0.28, "friction": 0.25, "restitution": 0.6}
 SHIP = {"breadth": "2 m", "height": "1 m", "draught": "0.4 m", "gravity_height": "0.3 m", "gyradius": "0.5 m"}
 GATE = {"points": [["0 mm", "0 mm"], ["0 mm", "150 mm"]], "speed": "1 m/s", "acceleration": "10 m/s^2"}
 THIN = [["0 mm", "20 mm"], ["20 mm", "20 mm"], ["20 mm", "90 mm"], ["0 mm", "90 mm"]]
+STEPPED = [("-300", "0"), ("300", "0"), ("300", "400"), ("0", "400"), ("0", "200"), ("-300", "200")]
+STEPPED = [[f"{y} mm", f"{z} mm"] for y, z in STEPPED]  # narrower from 200 mm on
+CUT = [["-105 mm", "100 mm"], ["105 mm", "310 mm"]]  # 3.5 mm of it, between the points at which sides are looked at
+FREE = [["-99 mm", "100 mm"], ["111 mm", "310 mm"]]
+GOES = {"speed": "1 m/s", "acceleration": "10 m/s^2"}
 ROLL = {"amplitude": "5 deg", "frequency": "1 Hz", "phase": "1 rad"}
 
 
@@ -222,6 +227,20 @@ FAULTS = {
         "parts.gate.points: it stands in a wall of the tank at [455.3 mm, 20 mm]; keep it inside, or "
         "let it out through the top.",
     ),
+    "a gate that cuts a corner": (
+        {"tank__width": False, "tank__height": False, "tank__outline": STEPPED, "parts__gate": {"points": CUT}},
+        "parts.gate.points: it stands in a wall of the tank at [-2.5 mm, 202.5 mm]; keep it inside, or let it out "
+        "through the top.",
+    ),
+    "a gate that cuts a corner on its way": (
+        {
+            "tank__width": False,
+            "tank__height": False,
+            "tank__outline": STEPPED,
+            "parts__gate": {"points": FREE, "move": ["-7 mm", "0 mm"], **GOES},
+        },
+        "parts.gate.move: it stands in a wall of the tank at [",
+    ),
     "a gate through the floor": (
         {"parts__gate": GATE | {"move": ["0 mm", "-100 mm"]}},
         "parts.gate.move: it stands in a wall of the tank at [0 m, -2.5 mm] on its way; keep it inside, or let it out "
@@ -264,6 +283,14 @@ FAULTS = {
 def test_what_cannot_be_is_refused_in_a_sentence(name):
     overrides, sentence = FAULTS[name]
     assert fault(**overrides).startswith(sentence)
+
+
+def test_a_gate_beside_a_corner_is_allowed():
+    """Past it, from wall to wall across another one, and along the walls; above the tank there are none."""
+    beside = [["-99 mm", "100 mm"], ["111 mm", "310 mm"]], [["-300 mm", "5 mm"], ["-295 mm", "0 mm"]]
+    along = [["-300 mm", "0 mm"], ["-300 mm", "200 mm"]], [["0 mm", "200 mm"], ["0 mm", "400 mm"]]
+    for points in (*beside, *along, [["100 mm", "0 mm"], ["100 mm", "450 mm"]]):
+        assert wet(tank__width=False, tank__height=False, tank__outline=STEPPED, parts__gate={"points": points}).parts
 
 
 def test_both_depth_and_region_are_refused_in_one_table_but_the_later_wins_over_a_base():

@@ -92,7 +92,10 @@ def test_a_run_records_the_water_and_its_gauges(swayed):
 def test_the_report_names_what_was_computed_and_measured(swayed, cup):
     summary, page = json.loads((swayed / "summary.json").read_text()), (swayed / "summary.md").read_text()
     expected = {"gauge_largest_P1", "gauge_impulse_P1", "run_up_L1", "highest_water", "sloshing_frequency"}
+    expected |= {"gauge_mean_P1", "crest_L1", "trough_scatter_L1", "force_peak_F1", "force_impulse_F1", "gauge_std_F1"}
     assert expected | {"water_residual", "water_excess"} <= summary["measures"].keys()
+    floor = summary["measures"]["gauge_mean_F1"]
+    assert floor["value"] == pytest.approx(1000.0 * 9.81 * 0.06 * 0.024, rel=0.05) and floor["unit"] == "N"
     assert summary["measures"].keys() == available_measures(load(cup)).keys()
     water = summary["water"]
     assert water["particles"] == 40 and water["spacing_m"] == pytest.approx(0.006) and water["sound_speed_m_s"] == 12.0

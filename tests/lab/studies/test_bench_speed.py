@@ -11,6 +11,7 @@ import taichi as ti
 from lab.base.errors import LabError
 from lab.studies.bench import gpu
 from lab.studies.bench.devices import Device
+from lab.studies.bench.gpu import grains as grains_on_gpu
 from lab.studies.bench.peers import lammps, liggghts, peer
 from lab.studies.bench.speed import beds, curves, grains, parts, processors, run_page, worlds
 from lab.studies.bench.speed.beds import ACETATE, DIAMETER, settled_bed
@@ -261,7 +262,7 @@ def test_gpu_pages_name_what_was_not_measured(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "choose_arch", none)
     text = gpu.BENCH.run((), tmp_path, fast=True).read_text()
     for arch in gpu.ARCHES:
-        assert f"Unmeasured: run.arch: there is no {arch} here." in text
+        assert f"Not run: run.arch: there is no {arch} here." in text
 
 
 def test_software_devices_are_named_and_run_only_small_beds(tmp_path, monkeypatch):
@@ -269,12 +270,12 @@ def test_software_devices_are_named_and_run_only_small_beds(tmp_path, monkeypatc
     monkeypatch.setattr(gpu, "device", lambda arch: Device("a painter", software=True))
     text = gpu.BENCH.run((), tmp_path, fast=False).read_text()
     assert text.count("Device: a painter, which is software on the processor.") == 2
-    assert text.count("Unmeasured: software is no graphics processor") == 2
+    assert text.count("Not run: there is no graphics processor here, and software is none") == 2
 
 
 def test_a_deviating_grain_is_reported_in_diameters():
     found = np.array([[0.0, 0.0], [4.0, 3.0]])
-    assert gpu.farthest(found, np.zeros((2, 2))) == pytest.approx(5.0 / DIAMETER)
+    assert grains_on_gpu.farthest(found, np.zeros((2, 2))) == pytest.approx(5.0 / DIAMETER)
 
 
 def test_ratios_to_other_codes_stand_by_processor_the_smallest_first(tmp_path, monkeypatch):

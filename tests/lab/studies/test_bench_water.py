@@ -7,7 +7,7 @@ import pytest
 
 from lab.studies.bench.peers import dualsphysics, pysph
 from lab.studies.bench.peers.bi4 import BOOL, DOUBLE3, TEXT, UINT, Item, read_file, write_file
-from lab.studies.bench.peers.pool import Frame, tait_density, tait_pressure, wall_particles
+from lab.studies.bench.peers.pool import Frame, tait_density, tait_pressure, wall_densities, wall_particles
 from lab.studies.bench.water.accuracy import LOST, errors
 from lab.studies.bench.water.cases import DENSITY, GRAVITY, HIGH, dam, frequency, gentle, mode
 from lab.studies.bench.water.errors import front_speed, pressure_error, wave_errors
@@ -32,6 +32,15 @@ def test_walls_continue_the_lattice():
     assert len(points) == (20 + 4) * (12 + 4) - 20 * 12
     away = np.abs(points - nearest).max(axis=1) / pool.spacing
     assert set(np.round(away, 9)) == {0.5, 1.5}
+
+
+def test_walls_of_calm_water_start_with_its_pressure():
+    """That of the depth of their points; those of a column that collapses have none."""
+    calm, fallen = gentle(10).pool(1.0, 1.0), gentle(10, steep=1.0).pool(1.0, 1.0)
+    points = np.array([[0.0, -0.05], [1.05, 0.6], [1.05, 1.1]])
+    excess = wall_densities(calm, points) / DENSITY - 1.0
+    np.testing.assert_allclose(excess, GRAVITY * np.array([1.05, 0.4, 0.0]) / calm.sound_speed**2, rtol=1e-9)
+    np.testing.assert_array_equal(wall_densities(fallen, points), DENSITY)
 
 
 def test_tait_is_undone():
@@ -112,6 +121,10 @@ def test_dualsphysics_keeps_its_particles(tmp_path, walls):
 
 @pytest.mark.skipif(pysph.available() is None, reason="PySPH is not installed")
 def test_pysph_takes_its_steps():
-    pool = gentle(10).pool(0.1, 0.1)
+    pool = gentle(10).pool(0.1, 0.05)
     run = pysph.run_pysph(pool)
+    assert [frame.time for frame in run.frames] == pytest.approx([0.0, 0.05, 0.1], abs=0.01)
+    assert run.frames[-1].position.shape == pool.position.shape
+    np.testing.assert_allclose(run.frames[0].position, pool.position, atol=1e-9)
+    np.testing.assert_allclose(run.frames[0].pressure, pool.pressure, atol=1e-6 * pool.pressure.max())
     assert run.seconds / run.steps == pytest.approx(pysph.COURANT * pool.length / pool.sound_speed, rel=0.02)

@@ -32,6 +32,16 @@ def test_finite_elements_find_the_flow_of_a_box():
     np.testing.assert_allclose(found * np.sign(found[0, 0]), exact, atol=0.01)
 
 
+def test_the_walls_over_the_earth_move_as_fast_as_their_places_say():
+    """Velocity and acceleration are the derivatives of place and angle; the tank starts at rest."""
+    step, time = 1e-5, 0.07
+    before, now, after = (balance.over_earth(time + k * step) for k in (-1, 0, 1))
+    for place, speed in (("origin", "velocity"), ("angle", "rate"), ("velocity", "acceleration"), ("rate", "gain")):
+        slope = (getattr(after, place) - getattr(before, place)) / (2.0 * step)
+        np.testing.assert_allclose(getattr(now, speed), slope, rtol=1e-6)
+    assert np.abs(balance.over_earth(0.0).velocity).max() < 1e-12
+
+
 @pytest.mark.parametrize(("depth", "cut", "rate"), CUTS)
 def test_slanted_corners_slow_the_water(depth, cut, rate):
     """Hz, by another finite-element program."""
@@ -104,9 +114,9 @@ def test_a_strained_drop_passes():
     assert found.lines and all(line.passed for line in found.lines)
 
 
-def test_a_free_drop_keeps_its_momentum():
+def test_a_drop_that_falls_gains_momentum_as_its_weight_says():
     """The cheapest case that runs water; the others are run by `test_fast_cases_pass_and_leave_a_page`."""
-    assert balance.free_drop().passed
+    assert balance.free_drop(balance.G).passed
 
 
 def test_every_case_of_water_says_so():

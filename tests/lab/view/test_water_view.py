@@ -166,3 +166,23 @@ def test_live_water_flows_to_the_lower_side(preset, tmp_path):
         live.close()
     assert abs(before) < 1e-3
     assert after < -0.02
+
+
+@pytest.mark.slow
+def test_live_water_sloshes_as_the_hand_sways_the_tank(preset, tmp_path):
+    """At 1 Hz, near its first frequency of 1.13 Hz, water goes farther in the tank than the tank; then that stops."""
+    with Live(steerable(load(preset)), tmp_path / "run", Progress(quiet=True)) as live:
+        courses = []
+        for amplitude in (0.0, 0.01, 0.0):
+            live.set("sway", amplitude)
+            live.set("sway_frequency", 1.0)
+            rows, begin = [], live.time
+            while live.time < begin + 3.0:
+                live.advance()
+                rows.append((live.time - begin, live.rows["pose"][0, 0], live.rows["water_centre"][0, 0]))
+            courses.append(np.ptp([row[1:] for row in rows if row[0] > 1.8], axis=0))
+        live.close()
+    (still, calm), (swayed, sloshed), (stopped, _) = courses
+    assert still == 0.0 and calm < 1e-3
+    assert swayed == pytest.approx(0.02, rel=0.05) and sloshed > 0.02
+    assert stopped < 1e-3

@@ -1,9 +1,12 @@
-"""What is said of water that has left an open tank, and of what is squeezed."""
+"""What stops a run of water, and what is said of it: of what has left the tank, of energy made, of what is squeezed."""
+
+import re
 
 import numpy as np
 import pytest
 
-from solvers.fluid.checks import outside, refuse_state
+from solvers.fluid.checks import CREATED, check_water, outside, refuse_state
+from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE
 from solvers.machine.errors import BadState
 from solvers.tank.tank import Tank
 from tests.oracles.water import box
@@ -50,3 +53,66 @@ def test_what_is_squeezed_is_named(gas, said):
     }
     with pytest.raises(BadState, match=said):
         refuse_state(0, {**particles, "gas": np.full(5, gas), "spilled": np.zeros(5, dtype=bool)}, 1.5, 17.0)
+
+
+SOUND = {"escaped": -1.0, "work": 4.0, "viscous": 3.0, "diffusive": 2.0, "kinetic": 1.0, "held": 0.5, "total": 100.0}
+START = 100.0 + 3.0 + 2.0 + 0.5 - 4.0  # J, of which all of that is accounted for
+
+
+def observed(**changes: float) -> dict[str, np.ndarray]:
+    """What is observed of two worlds, the second of which has these changes."""
+    return {f"water_{name}": np.array([value, changes.get(name, value)]) for name, value in SOUND.items()}
+
+
+def refused(action, *arguments) -> str:
+    """The message of BadState: one sentence on the second world, with the time and the remedy."""
+    with pytest.raises(BadState) as error:
+        action(*arguments)
+    said = str(error.value)
+    assert error.value.world == 1 and "t = 1.5 s" in said and "water.sound_speed" in said
+    assert re.fullmatch(r"world 1: (?!.*\. ).*\.", said), said
+    return said
+
+
+def test_water_that_is_sound_goes_on():
+    check_water(observed(), START, 1.5)
+    check_water(observed(total=60.0), START, 1.5)  # energy that is lost is told by the account, and stops nothing
+
+
+def test_a_particle_outside_stops_the_run():
+    assert refused(check_water, observed(escaped=37.0), START, 1.5).startswith("world 1: particle 37 of the water left")
+    assert refused(check_water, observed(escaped=0.0), np.nan, 1.5).startswith("world 1: particle 0 of the water left")
+
+
+def test_energy_from_nothing_stops_the_run():
+    """A tenth of what is exchanged, a thousandth of what there is and what is let pass by may be missing, no more."""
+    most = CREATED * (4.0 + 3.0 + 2.0 + 1.0) + 1e-3 * START
+    check_water(observed(total=100.0 + 0.99 * most), START, 1.5)
+    more = observed(total=100.0 + 1.01 * most)
+    assert "gained energy from nothing" in refused(check_water, more, START, 1.5)
+    check_water(more, START, 1.5, 0.02 * most)
+    check_water(more, np.nan, 1.5)  # the start is unknown
+
+
+def test_what_is_no_number_stops_the_run():
+    """It is told where, by a neighbour that still has a place if it has none itself."""
+    fine = {"place": PLACES, "speed": np.zeros(5), "excess": np.zeros(5), "span": np.ones(5), "gas": np.zeros(5)}
+    fine["spilled"] = np.zeros(5, dtype=bool)
+    for name in ("place", "speed", "excess"):
+        broken = {key: values.copy() for key, values in fine.items()}
+        broken[name][2] = np.nan
+        said = refused(refuse_state, 1, broken, 1.5, 17.0)
+        assert "not a number" in said and ("nan" in said) == (name == "place")
+    broken["place"][1] = np.nan
+    assert "y = 0.4 m, z = 0.1 m" in refused(refuse_state, 1, broken, 1.5, 17.0)
+
+
+@pytest.mark.parametrize(("whose", "other"), [("within", "spray"), ("spray", "within")])
+def test_spray_and_the_surface_may_be_squeezed_more_than_water_within(whose, other):
+    """The one is named that is farthest beyond what it may be, not the one that is squeezed most."""
+    span, most = {"within": 1.0, "spray": 0.5 * INSIDE}, {"within": DENSEST, "spray": DENSEST_SPRAY}
+    excess = np.array([0.0, 0.0, 1.01 * most[whose], 0.0, 0.9 * most[other]])
+    spans = np.array([1.0, 1.0, span[whose], 1.0, span[other]])
+    fine = {"place": PLACES, "speed": np.zeros(5), "gas": np.zeros(5), "spilled": np.zeros(5, dtype=bool)}
+    said = refused(refuse_state, 1, {**fine, "excess": excess, "span": spans}, 1.5, 17.0)
+    assert f"off by {101.0 * most[whose]:.3g} % at y = 0.4 m" in said

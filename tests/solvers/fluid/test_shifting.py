@@ -52,3 +52,15 @@ def test_momentum_is_kept_to_rounding_and_its_moment_to_the_error_of_sums(run):
     span = p.read(p.span)[0][0]
     assert shift.max() > 1e-3  # m/s: they are shifted
     assert not shift[span < 0.75].any()  # but at the surface
+
+
+def test_water_that_is_not_shifted_has_nothing_of_it(run):
+    """No array that shifting needs, so that no kernel can hold a line of it; and what momentum needs goes alone."""
+    arrays = {}
+    for shifting in ("none", "delta-plus"):
+        other = Simulation(patch(shifting), threads=1, arch="cpu")
+        arrays[shifting] = set(other.arrays.arrays)
+        other.close()
+    shifted = {"water.span_before", "water.shift_y", "water.shift_z"}
+    assert arrays["delta-plus"] - arrays["none"] == shifted and arrays["none"] < arrays["delta-plus"]
+    assert set(run.arrays.arrays) - arrays["delta-plus"] == {"water.carried_y", "water.carried_z"}

@@ -13,6 +13,7 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
 from tests.oracles.scenes import material
+from tests.oracles.water import still
 from tests.solvers.grains.test_collisions import rebound
 
 G, R, DENSITY = 9.81, 1.5e-3, 1319.0
@@ -215,3 +216,13 @@ def test_missing_devices_are_reported_in_one_sentence(monkeypatch, arch, precisi
     with pytest.raises(Unavailable, match=rf"^run\.arch: [^.]*{'CUDA' if arch == 'cuda' else '32 bits'}.*\.$") as error:
         Simulation(scene(precision), start()[0], 1, arch=arch)
     assert "\n" not in str(error.value)
+
+
+def test_water_has_no_vulkan(monkeypatch):
+    """A real device is passed over by auto; asked for, it is refused before anything is compiled."""
+    monkeypatch.setattr(runtime, "_cuda", lambda: False)
+    monkeypatch.setattr(runtime, "_real_vulkan", lambda: True)
+    assert runtime.choose_arch("auto", "f32", water=True) == "cpu"
+    assert runtime.choose_arch("auto", "f32") == "vulkan"
+    with pytest.raises(Unavailable, match=r"^run\.arch: Taichi cannot compile water for vulkan; use cuda or cpu\.$"):
+        Simulation(still(0.2, 0.2, 0.1, 5, precision="f32"), threads=1, arch="vulkan")

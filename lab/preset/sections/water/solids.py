@@ -78,7 +78,9 @@ def _check_place(preset: liquid.Wet, part: PartGroup, key: str) -> None:
     share = np.linspace(0.0, 1.0, ALONG)[:, None]
     ends = points[1:] if not part.closed else np.roll(points, -1, axis=0)
     drawn = np.concatenate([a + share * (b - a) for a, b in zip(sides, ends, strict=True)])
-    for motion, places in _ways(part, drawn):
+    for motion, moved in _ways(part, np.concatenate([sides, ends, drawn])):
+        begin, end, places = np.split(moved, [len(sides), 2 * len(sides)])
+        places = np.concatenate([places, _between_walls(begin, end, tank)])
         inside = outline.holds(places) | (places[:, 1] >= top - left)
         for step in left * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)]):
             inside |= outline.holds(places + step)
@@ -90,6 +92,25 @@ def _check_place(preset: liquid.Wet, part: PartGroup, key: str) -> None:
                 f"{key}.{motion}: it stands in a wall of the tank at {where}{when}; keep it inside, or let it out "
                 "through the top."
             )
+
+
+def _between_walls(begin: np.ndarray, end: np.ndarray, tank: np.ndarray) -> np.ndarray:
+    """The middles (n, 2) of the pieces into which a tank's walls cut straight sides from `begin` to `end` (k, 2) m."""
+    side, wall = (end - begin)[:, None], (np.roll(tank, -1, axis=0) - tank)[None]
+    apart, across = tank[None] - begin[:, None], _cross(side, wall)
+    with np.errstate(divide="ignore", invalid="ignore"):  # of parallels
+        share, other = _cross(apart, wall) / across, _cross(apart, side) / across
+    meets = (share > 0.0) & (share < 1.0) & (other >= 0.0) & (other <= 1.0)
+    cuts = np.pad(np.where(meets, share, 1.0), ((0, 0), (1, 1)), constant_values=(0.0, 1.0))
+    cuts.sort(axis=1)
+    which, piece = np.nonzero(np.diff(cuts) > 0.0)
+    middle = 0.5 * (cuts[which, piece] + cuts[which, piece + 1])
+    return begin[which] + middle[:, None] * side[which, 0]
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """a × b of vectors in the plane."""
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def _ways(part: PartGroup, drawn: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:

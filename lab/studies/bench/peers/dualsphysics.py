@@ -36,7 +36,15 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.studies.bench.peers.bi4 import BOOL, DOUBLE3, TEXT, UINT, ULLONG, Item, read_file, write_file
 from lab.studies.bench.peers.peer import working_folder
-from lab.studies.bench.peers.pool import Frame, Pool, PoolRun, tait_density, tait_pressure, wall_particles
+from lab.studies.bench.peers.pool import (
+    Frame,
+    Pool,
+    PoolRun,
+    tait_density,
+    tait_pressure,
+    wall_densities,
+    wall_particles,
+)
 
 NAME = "DualSPHysics"
 EXECUTABLES = "DualSPHysics5.4CPU_linux64", "DualSPHysicsCPU_linux64", "dualsphysics"
@@ -84,11 +92,7 @@ def _write_case(folder: Path, pool: Pool, walls: str) -> int:
     place[:, [0, 2]] = np.concatenate([wall, pool.position])
     velocity = np.zeros_like(place)
     velocity[len(wall) :, [0, 2]] = pool.velocity
-    density = np.concatenate([np.full(len(wall), pool.density), tait_density(pool, EXPONENT)])
-    level = pool.position[:, 1].max() + 0.5 * pool.spacing  # walls start with the pressure of water at rest
-    below = np.maximum(level - wall[:, 1], 0.0) * pool.gravity / pool.sound_speed**2
-    still = np.allclose(pool.velocity, 0.0)
-    density[: len(wall)] *= 1.0 + (below if still else 0.0)
+    density = np.concatenate([wall_densities(pool, wall), tait_density(pool, EXPONENT)])
     arrays = {
         "Idp": (UINT, np.arange(len(place))),
         "Posd": (DOUBLE3, place),

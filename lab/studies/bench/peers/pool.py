@@ -84,6 +84,18 @@ def tait_pressure(pool: Pool, density: np.ndarray, exponent: float) -> np.ndarra
     return pool.density * pool.sound_speed**2 / exponent * ((density / pool.density) ** exponent - 1.0)
 
 
+CALM = 0.1  # of √(g H): up to this speed walls start with the pressure of water at rest
+
+
+def wall_densities(pool: Pool, points: np.ndarray) -> np.ndarray:
+    """Densities (m,) at the start of wall particles at points (m, 2): of water at rest before them, if it is calm."""
+    level = pool.position[:, 1].max() + 0.5 * pool.spacing
+    fastest = np.linalg.norm(pool.velocity, axis=1).max()
+    calm = fastest < CALM * np.sqrt(pool.gravity * level) and pool.pressure.max() > 0.0
+    below = np.maximum(level - points[:, 1], 0.0) * pool.gravity / pool.sound_speed**2
+    return pool.density * (1.0 + (below if calm else np.zeros(len(points))))
+
+
 def wall_particles(pool: Pool, layers: int) -> tuple[np.ndarray, np.ndarray]:
     """Places (m, 2) of wall particles on the lattice of a tank's particles, and their nearest points on the walls."""
     dx, half = pool.spacing, 0.5 * pool.width

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.report.page import Page
-from lab.studies.bench.peers import dualsphysics
+from lab.studies.bench.peers import dualsphysics, pysph
 from lab.studies.bench.peers.pool import Frame
 from lab.studies.bench.remembered import remembered
 from lab.studies.bench.water.cases import GRAVITY, HIGH, Case, dam, frequency, gentle
@@ -26,9 +26,11 @@ Follow = Callable[[Case, float], Sequence[Frame]]
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     rows = FEW if fast else ROWS
-    codes: dict[str, Follow] = {name: partial(_ours, **how) for name, how in OURS.items()}
+    codes: dict[str, Follow] = {name: partial(followed_here, **how) for name, how in OURS.items()}
     if dualsphysics.available() is not None:
         codes |= {f"{dualsphysics.NAME}, {walls}": partial(_theirs, walls=walls) for walls in ("dbc", "mdbc")}
+    if pysph.available() is not None:
+        codes[pysph.NAME] = _pysphs
     page.section("Errors")
     page.say(f"""{rows} rows of particles. At rest for {STILL:g} s from hydrostatic pressure: rms of the error of
         pressure over all particles, and their fastest, over ρ g H and √(gH). Standing wave of 20 mm for a period: its
@@ -36,7 +38,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         α h c0/8, takes {1e2 * _viscous(gentle(rows)):.1f} % of it. Column that collapses: speed of its front,
         experiments 1.6 to 1.8 √(gH), and when it is near the far wall. Walls of DualSPHysics: dbc, one layer of its
         dynamic boundary particles; mdbc, its modified ones (English et al. 2022), as many layers as the kernel
-        reaches.""")
+        reaches, which PySPH has, too.""")
     table = []
     for name, follow in codes.items():
         print(f"water: errors of {name}", flush=True)
@@ -58,7 +60,7 @@ def errors(follow: Follow, rows: int, kept: Path) -> list[float | str]:
     return told
 
 
-def _resting(follow: Follow, rows: int) -> tuple[float, float]:
+def resting(follow: Follow, rows: int) -> tuple[float, float]:
     """Error of the pressure at rest (%) and the fastest particle over √(gH)."""
     case = gentle(rows, steep=0.0)
     last = follow(case, STILL)[-1]
@@ -68,7 +70,7 @@ def _resting(follow: Follow, rows: int) -> tuple[float, float]:
     return 1e2 * pressure_error(last), float(fastest)
 
 
-def _waving(follow: Follow, rows: int) -> tuple[float, float]:
+def waving(follow: Follow, rows: int) -> tuple[float, float]:
     """Error of the wave's frequency and its loss of height in a period, %."""
     case = gentle(rows)
     frames = follow(case, 2.0 * np.pi / frequency())
@@ -88,7 +90,7 @@ def _whole(case: Case, frame: Frame) -> bool:
     return len(frame.position) > KEPT * case.count
 
 
-POOLS = {"rest": _resting, "wave": _waving, "column": _breaking}
+POOLS = {"rest": resting, "wave": waving, "column": _breaking}
 
 
 def _viscous(case: Case) -> float:
@@ -97,7 +99,8 @@ def _viscous(case: Case) -> float:
     return float(1.0 - np.exp(-2.0 * viscosity * k**2 * 2.0 * np.pi / frequency()))
 
 
-def _ours(case: Case, seconds: float, **how: object) -> list[Frame]:
+def followed_here(case: Case, seconds: float, **how: object) -> list[Frame]:
+    """What the lab makes of a case, FRAMES times and at the start; `how` goes to its worker."""
     worker = Worker(case, **how)
     try:
         return worker.frames(np.linspace(0.0, seconds, FRAMES + 1))
@@ -107,3 +110,7 @@ def _ours(case: Case, seconds: float, **how: object) -> list[Frame]:
 
 def _theirs(case: Case, seconds: float, walls: str) -> list[Frame]:
     return dualsphysics.run_dualsphysics(case.pool(seconds, seconds / FRAMES), walls=walls).frames
+
+
+def _pysphs(case: Case, seconds: float) -> list[Frame]:
+    return pysph.run_pysph(case.pool(seconds, seconds / FRAMES)).frames

@@ -32,11 +32,12 @@ class Case:
         """Number of particles."""
         return len(self.drops)
 
-    def scene(self, precision: str = "mixed", **of_water: object) -> Scene:
-        """The scene of the lab in a precision, its defaults changed by `of_water`."""
+    def scene(self, precision: str = "mixed", schedule: str = "auto", worlds: int = 1, **of_water: object) -> Scene:
+        """The scene of the lab in as many equal worlds, its defaults changed by `of_water`."""
         outline = np.array(rectangle(self.width, self.height))
         water = Water(**{"spacing": self.spacing, "sound_speed": self.sound_speed, "density": DENSITY} | of_water)
-        return Scene(radius=np.zeros((1, 0)), outline=outline, water=water, drops=self.drops[None], precision=precision)
+        how = {"precision": precision, "schedule": schedule, "drops": np.tile(self.drops, (worlds, 1, 1))}
+        return Scene(radius=np.zeros((worlds, 0)), outline=outline, water=water, **how)
 
     def pool(self, seconds: float, every: float, threads: int = 1) -> Pool:
         """The same for a peer: its pressures are those of the linear equation of state."""

@@ -60,11 +60,11 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.say("""The small wave on one core: millions of particle-steps and simulated seconds in a second of the
         processor's time, the median of three; errors as above. Viscosity takes its share of the height, in proportion
         to α, h and c0: of the defaults with 40 layers 1.6 % in a period. On the front is what no other way beats in
-        both simulated seconds and the error of frequency. Schemes are those of `water.scheme`, with their models,
-        numbers and speeds of sound (as_K's is the lab's, since its own is of small tanks), and the lab's walls and
-        steps.""")
+        both simulated seconds and the error of frequency, to three digits. Schemes are those of `water.scheme`, with
+        their models, numbers and speeds of sound (as_K's is the lab's, since its own is of small tanks), and the lab's
+        walls and steps.""")
     found = {(way, count): measured(way, count, work) for way, count in asked}
-    best = front([(one["seconds"], abs(one["frequency"])) for one in found.values()])
+    best = front([(one["seconds"], float(f"{abs(one['frequency']):.3g}")) for one in found.values()])
     names = "particle_steps", "seconds", "frequency", "loss", "pressure"
     table = [
         [way, str(count), *(float(one[name]) for name in names), "yes" if on else ""]

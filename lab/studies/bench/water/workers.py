@@ -3,6 +3,8 @@
 import time
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from lab.studies.bench.aside import Aside
 from lab.studies.bench.peers.pool import Frame, PoolRun
 from lab.studies.bench.water.cases import Case
@@ -12,10 +14,10 @@ AHEAD = 200  # steps before the first timing: compiling
 
 
 class Worker(Aside):
-    """A simulation of a case in a process of its own."""
+    """A simulation of a case on an `arch` in a process of its own; the rest goes to `Case.scene`."""
 
-    def __init__(self, case: Case, threads: int = 1, ahead: int = AHEAD, **of_scene: object):
-        super().__init__(_Pool, case, threads, ahead, of_scene)
+    def __init__(self, case: Case, threads: int = 1, ahead: int = AHEAD, arch: str = "cpu", **of_scene: object):
+        super().__init__(_Pool, case, threads, ahead, arch, of_scene)
 
     def run(self, seconds: float, wall: float) -> PoolRun:
         """From the start for `seconds`, over and over until `wall` seconds have gone by."""
@@ -33,6 +35,11 @@ class Worker(Aside):
         """Neighbours in the lists of all blocks, walls left out."""
         return self.ask("neighbours")
 
+    def unbalanced(self, steps: int) -> float:
+        """By what the water's momentum misses its weight less the load on the tank after so many steps, of the weight
+        in that time."""
+        return self.ask("missed", steps)
+
     def frames(self, times: Sequence[float]) -> list[Frame]:
         """The particles at these times (s), from the start."""
         return self.ask("followed", list(times))
@@ -41,8 +48,8 @@ class Worker(Aside):
 class _Pool:
     """The simulation in the process of a worker."""
 
-    def __init__(self, case: Case, threads: int, ahead: int, of_scene: Mapping[str, object]):
-        self.run = Simulation(case.scene(**of_scene), threads=threads, arch="cpu")
+    def __init__(self, case: Case, threads: int, ahead: int, arch: str, of_scene: Mapping[str, object]):
+        self.run = Simulation(case.scene(**of_scene), threads=threads, arch=arch)
         self.run.advance(ahead)
 
     def bytes(self) -> int:
@@ -55,7 +62,7 @@ class _Pool:
         return int(self.run.water.lists.near.first.to_numpy().max())
 
     def restart(self) -> None:
-        self.run.place(self.run.scene.radius.reshape(1, 0, 1) * [0.0, 0.0])
+        self.run.place(np.zeros((self.run.scene.worlds, 0, 2)))
         self.run.start_clock()
 
     def timed(self, seconds: float, wall: float) -> PoolRun:
@@ -67,7 +74,26 @@ class _Pool:
             spent += time.perf_counter() - begun
             busy += time.process_time() - before
             done += steps
-        return PoolRun(spent, busy, done, done * run.dt, run.scene.particles, [])
+        return PoolRun(spent, busy, done, done * run.dt, run.scene.worlds * run.scene.particles, [])
+
+    def missed(self, steps: int) -> float:
+        run, weight = self.run, self.run.scene.gravity * self._mass()
+        self.restart()
+        run.advance(1)  # the load is a mean since the last look
+        run.observe()
+        before = self._momentum()
+        run.advance(steps)
+        gained = (self._momentum() - before) / (steps * run.dt)
+        load = run.observe()["wall_force"][0, :2]
+        return float(np.linalg.norm(gained + load - [0.0, -weight]) / weight)
+
+    def _mass(self) -> float:
+        return float(self.run.water.particles.read(self.run.water.particles.mass)[0][0].sum())
+
+    def _momentum(self) -> np.ndarray:
+        p = self.run.water.particles
+        mass, *velocity = p.read(p.mass, *p.velocity)
+        return np.array([(mass[0] * one[0].astype(float)).sum() for one in velocity])
 
     def followed(self, times: Sequence[float]) -> list[Frame]:
         self.restart()

@@ -5,6 +5,8 @@ from math import cos, sin
 import numpy as np
 
 from lab.studies.case import Case, Found, Line
+from lab.studies.verify.plain import across, turned
+from lab.studies.verify.plain_water import EarthWater, Pose
 from lab.studies.verify.water.scenes import (
     Field,
     G,
@@ -36,16 +38,21 @@ WHY = {
     "mixed": "forces are sums of 32 bits, 6e-8 of each",
 }
 HELD, LONG_TILTED = -0.4, 100.0  # rad; s, a time at which the tilt is over
+# Each starts at its end, without a speed; the first turns about a fixed point.
+SHAKEN = Roll(0.3, 0.8, np.pi / 2.0, (0.1, 0.2)), Sway(0.05, 1.1, np.pi / 2.0), Heave(0.02, 0.9, np.pi / 2.0)
+SMALL = 0.2, 0.1, 10  # m, m, and layers: a box of water
+A_WHILE, LONGER = 0.03, 0.15  # s
+EXACT = "no error of the step: drifts of the tank's frame are exact, and forces and rates see the same walls; rounding"
 STEP = 8e-4  # s: the derived ones differ, with the height of the turned outline
 
 
-def drop(motions: tuple = ()) -> Scene:
-    """A round drop that is strained and turns, without gravity, in a tank that it does not touch."""
+def drop(motions: tuple = (), gravity: float = 0.0) -> Scene:
+    """A round drop that is strained and turns, by default without gravity, in a tank that it does not touch."""
     water = Water(SPACING, 20.0, alpha=0.02, walls=False)
     place = grid(2.0 * RADIUS, 2.0 * RADIUS, SPACING) - RADIUS
     place = place[np.hypot(*place.T) < RADIUS]
     drops = filled(place, water, lambda r: r * [2.0, -2.0] + 3.0 * np.stack([-r[:, 1], r[:, 0]], axis=1))
-    return scene(water, drops, box(1.0, 1.0), 0.0, motions=[motions])
+    return scene(water, drops, box(1.0, 1.0), gravity, motions=[motions])
 
 
 def tossed() -> Field:
@@ -54,14 +61,18 @@ def tossed() -> Field:
     return lambda place: 0.2 * random.uniform(-1.0, 1.0, place.shape)
 
 
-def free_drop() -> Line:
-    """Momentum of the free drop, in shares of the sum of its particles' own."""
-    with simulated(drop()) as run:
+def free_drop(gravity: float) -> Line:
+    """Momentum of a free drop less that of its fall, in shares of the sum of its particles' own and of the fall's."""
+    with simulated(drop(gravity=gravity)) as run:
+        run.advance(1)  # the first kick is half a step long
         _, before, mass = kept(run)
-        list(looks(run, [FLIGHT]))
-        change = np.abs(mass @ (kept(run)[1] - before)).max()
-        share = change / (mass @ np.hypot(*before.T))
-    return Line.off("drop, of Σ m |u|", "kept", share, 1e-12, "pair forces are equal and opposite")
+        steps = round(FLIGHT / run.dt)
+        run.advance(steps)
+        fall = np.array([0.0, -gravity * steps * run.dt])
+        off = np.abs(mass @ (kept(run)[1] - before) - fall * mass.sum()).max()
+        share = off / (mass @ np.hypot(*before.T) - fall[1] * mass.sum())
+    name = "falling drop, beside m g t, of Σ m |u| + m g t" if gravity else "drop, of Σ m |u|"
+    return Line.off(name, "m g t" if gravity else "kept", share, 1e-12, "pair forces are equal and opposite")
 
 
 def tank(precision: str) -> Line:
@@ -88,8 +99,8 @@ def tank(precision: str) -> Line:
 
 
 def momentum(_: bool) -> Found:
-    """A free drop, and water with its tank, in both precisions."""
-    return Found([free_drop(), tank("f64"), tank("mixed")])
+    """A free drop, one that falls, and water with its tank, in both precisions."""
+    return Found([free_drop(0.0), free_drop(G), tank("f64"), tank("mixed")])
 
 
 def flight(_: bool) -> Found:
@@ -105,6 +116,52 @@ def flight(_: bool) -> Found:
     error = np.abs(over - alone).max()
     line = Line.off("places", "the drop seen at rest", error, 1e-9, "drifts are exact; rounding", "m")
     return Found([line], notes=[f"Seen from the tank the drop goes up to {away:.0f} mm elsewhere."])
+
+
+def over_earth(time: float) -> Pose:
+    """Where SHAKEN has the tank at a time (s): it turns about a fixed point, and then sways and heaves."""
+    rates, sizes, phases = (
+        np.array([getattr(one, name) for one in SHAKEN]) for name in ("frequency", "amplitude", "phase")
+    )
+    rates = 2.0 * np.pi * rates
+    turns = rates * time + phases
+    (angle, *way), (rate, *velocity) = sizes * np.sin(turns), sizes * rates * np.cos(turns)
+    gain, *acceleration = -sizes * rates**2 * np.sin(turns)
+    centre = np.array(SHAKEN[0].centre)
+    arm = turned(-centre, angle)
+    return Pose(
+        way + centre + arm,
+        angle,
+        velocity + rate * across(arm),
+        rate,
+        acceleration + gain * across(arm) - rate**2 * arm,
+        gain,
+    )
+
+
+def walls(fast: bool) -> Found:
+    """Water on the walls of a tank that rolls, sways and heaves, and the same walls as they move over the earth."""
+    side, deep, rows = SMALL
+    water = Water(deep / rows, 10.0 * np.sqrt(G * deep))
+    drops = at_rest(box(side, side), deep, water, G)[None]
+    with simulated(scene(water, drops, box(side, side), motions=[SHAKEN])) as run:
+        run.advance(1)  # the first kick is half a step long
+        plain, first = EarthWater(run.scene, over_earth), over_earth(run.time)
+        place, velocity, mass = kept(run)
+        (excess,) = (values[0] for values in run.water.particles.read(run.water.particles.excess))
+        r, u, s = first.places(place), turned(velocity, first.angle), excess
+        for _ in range(round((A_WHILE if fast else LONGER) / run.dt)):
+            r, u, s = plain.step(r, u, s, mass, run.time, run.dt)
+            run.advance(1)
+        now, after = over_earth(run.time), kept(run)[0]
+        error = np.abs(now.places(after) - r).max()
+        moved, gone = np.abs(r - first.places(place)).max(), np.abs(after - place).max()
+        on_walls = int((plain.wall_pressure(r, mass, s) > 0.0).sum())
+    line = Line.off("places", "moving walls in the earth frame, plain arrays", error, 1e-9, EXACT, "m")
+    note = f"""{len(r)} particles of the tank {1e3 * side:.0f} mm wide, by double sums over all of them and {on_walls}
+    dummies that bear pressure, for {run.time:.2f} s. Over the earth the water goes up to {1e3 * moved:.0f} mm, in its
+    tank up to {1e3 * gone:.0f} mm."""
+    return Found([line], notes=[note])
 
 
 def turning(angle: float) -> np.ndarray:
@@ -134,5 +191,6 @@ def held(_: bool) -> Found:
 CASES = (
     Case("water-momentum", SECTION, "Momentum of water and tank", momentum),
     Case("water-frame-flight", SECTION, "A drop seen from a moving tank", flight, quick=False),
+    Case("water-frame-walls", SECTION, "Water on the walls of a moving tank, and walls that move", walls),
     Case("water-frame-tilt", SECTION, "Water in a tank held at an angle, and in a turned one", held, quick=False),
 )

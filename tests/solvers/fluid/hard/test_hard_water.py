@@ -70,7 +70,7 @@ def test_chamfers_of_45_degrees_under_a_strong_roll():
     outline = np.array([[-0.2, 0.0], [0.2, 0.0], [0.3, 0.1], [0.3, 0.35], [-0.3, 0.35], [-0.3, 0.1]])
     roll = Roll(np.radians(12.0), 0.75, centre=(0.0, 0.15))
     rows = course(tank_of(outline, 0.15, 20, motions=[(roll,)]), np.arange(1, 17) * 0.5)
-    assert np.abs(unaccounted(rows)).max() < 0.05
+    assert np.abs(unaccounted(rows)).max() < 0.01
 
 
 def test_a_jet_through_a_slot_of_four_spacings_levels_two_basins():
@@ -139,11 +139,17 @@ def test_a_full_tank_sways_for_twenty_thousand_steps():
 
 
 def test_one_particle_of_depth():
-    """A single layer that slides to and fro on the floor of a swaying tank."""
+    """A single layer that slides to and fro on the floor of a swaying tank.
+
+    Its account closes to 1 %, but its level, twice the height of its centre of mass, sinks by a quarter of a spacing.
+    """
     scene = tank_of(box(0.4, 0.1), 0.01, 1, motions=[(Sway(0.02, 0.8),)], soft_start=1.0)
     rows = course(scene, np.arange(1, 11) * 1.0)
     assert np.abs(rows[-1]["water_centre"][0, 0]) < 0.2
     assert rows[-1]["water_place"][0, :, 1].min() > 0.0
+    assert np.abs(unaccounted(rows)).max() < 0.01
+    levels = np.array([2.0 * row["water_centre"][0, 1] for row in rows]) / scene.water.spacing
+    assert levels[0] == pytest.approx(1.0, abs=0.01) and levels.min() > 0.7
 
 
 def test_half_an_hour_of_resonance():

@@ -1,4 +1,4 @@
-"""cargolab bench gpu: the same bed on GPUs and on the CPU, compared in results and in speed."""
+"""The same bed of grains on a graphics processor and on the processor: its places, and grain-steps a second."""
 
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -7,23 +7,16 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from lab.base.errors import LabError
 from lab.report.page import Page
-from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
-from lab.studies.bench.devices import Device, device
+from lab.studies.bench.gpu.drawing import plotted
 from lab.studies.bench.speed.beds import DIAMETER, Bed, usual_bed
-from lab.studies.bench.speed.drawing import draw_with_range
 from lab.studies.bench.speed.workers import Speeds, Worker, compared, millions
-from lab.studies.engine import Bench
-from solvers.machine import runtime
 from solvers.machine.errors import BadState, Unavailable
 from solvers.motion import Sway
 from solvers.simulation import Simulation
 
-ARCHES = {"cuda": ("f64", "mixed", "f32"), "vulkan": ("f32",)}
-COLOURS = {"f64": BLUE, "mixed": GREEN, "f32": VERMILION}
 COUNT, TRIED = 2000, 500  # grains of the bed that worlds are made of, and of the bed that is swayed
 COPIES = (5, 50, 500, 2000)  # side by side in one world, and worlds in a batch
 SWAY, TIME = Sway(0.015, 3.0), 0.02  # m, Hz; s
@@ -31,36 +24,8 @@ ROUNDINGS = 10.0  # times what another order of sums changes on the processor, o
 ONE, BATCH = SHAPES = "one world", f"worlds of {COUNT} grains"
 
 
-def study(page: Page, work: Path, fast: bool, arch: str) -> None:
-    """Add the section on one kind of device to the page."""
-    precisions = ARCHES[arch]
-    page.section(arch.upper() if arch == "cuda" else arch.capitalize())
-    found, why_not = there(arch, precisions[-1])
-    if found is None:
-        page.say(f"Unmeasured: {why_not}")
-        return
-    page.say(f"Device: {found.name}{', which is software on the processor' if found.software else ''}.")
-    if found.software and not fast:
-        page.say("Unmeasured: software is no graphics processor; `cargolab bench gpu --fast` tries it on small beds.")
-        return
-    try:
-        _correctness(page, work, arch, precisions)
-        _speed(page, work, arch, precisions, COPIES[:1] if fast else COPIES, 3 if fast else 7)
-    except LabError as error:
-        page.say(f"It broke off: {error}")
-
-
-def there(arch: str, precision: str) -> tuple[Device | None, str]:
-    """The device of an arch, or none and the reason in a sentence."""
-    try:
-        runtime.choose_arch(arch, precision)
-    except Unavailable as error:
-        return None, str(error)
-    found = device(arch)
-    return found, "" if found else f"the driver of {arch} tells of no device."
-
-
-def _correctness(page: Page, work: Path, arch: str, precisions: tuple[str, ...]) -> None:
+def correctness(page: Page, work: Path, arch: str, precisions: tuple[str, ...]) -> None:
+    """Tell how far from the processor's places grains of a device end."""
     bed = usual_bed(work, TRIED)
     rows = []
     for precision in precisions:
@@ -71,7 +36,7 @@ def _correctness(page: Page, work: Path, arch: str, precisions: tuple[str, ...])
         tolerance = ROUNDINGS * max(reordered, last_digit(precision, bed))
         verdict = "pass" if error <= tolerance else "fail"
         rows.append([precision, f"{error:.1e}", f"{reordered:.1e}", f"{tolerance:.1e}", verdict])
-    page.say(f"""A bed of {TRIED} grains swayed by {1e3 * SWAY.amplitude:g} mm at {SWAY.frequency:g} Hz for {TIME:g} s
+    page.say(f"""Grains: a bed of {TRIED} swayed by {1e3 * SWAY.amplitude:g} mm at {SWAY.frequency:g} Hz for {TIME:g} s
         without soft start, against the processor with the same schedule and precision: largest distance of a grain, in
         diameters. The tolerance is rounding: {ROUNDINGS:g} times what another order of sums (schedule per-world) does
         on the processor, or the last digit of a place if that is more.""")
@@ -110,10 +75,12 @@ def last_digit(precision: str, bed: Bed) -> float:
     return float(np.finfo(kind).eps * np.abs(bed.position).max() / DIAMETER)
 
 
-def _speed(page: Page, work: Path, arch: str, precisions: tuple[str, ...], copies: tuple[int, ...], turns: int) -> None:
+def speed(page: Page, work: Path, arch: str, precisions: tuple[str, ...], fast: bool) -> None:
+    """Tell grain-steps a second of a device by number of grains."""
+    copies, turns = (COPIES[:1], 3) if fast else (COPIES, 7)
     bed = usual_bed(work, COUNT)
-    page.say(f"""Grain-steps a second: {COUNT} settled grains and as many copies side by side in one world as it takes,
-        or as many worlds of them. At the ends of the longest, 32 bits resolve
+    page.say(f"""Grains: grain-steps a second. {COUNT} settled grains and as many copies side by side in one world as it
+        takes, or as many worlds of them. At the ends of the longest, 32 bits resolve
         {1e6 * DIAMETER * last_digit("f32", bed.times(copies[-1])):.2g} µm only: that is for speed, not for physics.""")
     found: dict[tuple[str, int], Speeds] = {(shape, number): {} for shape in SHAPES for number in copies}
     for (shape, number), speeds in found.items():
@@ -130,30 +97,13 @@ def _speed(page: Page, work: Path, arch: str, precisions: tuple[str, ...], copie
             for (shape, n), v in found.items()
         ],
     )
-    page.figure(arch, plotted(found), f"Grain-steps a second on {arch} against the number of grains")
+    sizes = {(shape, number * COUNT): speeds for (shape, number), speeds in found.items()}
+    page.figure(
+        f"{arch}-grains", plotted(sizes, "grain"), f"Grain-steps a second on {arch} against the number of grains"
+    )
 
 
 def worker(bed: Bed, number: int, shape: str, arch: str, precision: str) -> Worker:
     """So many copies of a bed on a device, in one world or in one each."""
     how = {"arch": arch, "precision": precision, "schedule": "per-grain"}
     return Worker(bed.times(number), **how) if shape == ONE else Worker(bed, worlds=number, **how)
-
-
-def plotted(found: dict[tuple[str, int], Speeds]) -> Figure:
-    """Medians with their ranges against the number of grains, a panel a shape."""
-    figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-    for axes, shape in zip(figure.subplots(1, len(SHAPES), sharey=True), SHAPES, strict=True):
-        for precision, colour in COLOURS.items():
-            done = {n * COUNT: v[precision] for (of, n), v in found.items() if of == shape and precision in v}
-            if done:
-                draw_with_range(axes, list(done), list(done.values()), colour, precision)
-        axes.set(title=shape, xscale="log", yscale="log", xlabel="grains")
-    handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc=BELOW, ncols=len(COLOURS))
-    figure.axes[0].set_ylabel("million grain-steps a second")
-    return figure
-
-
-ABOUT = """Schedule per-grain: every grain on its own, a launch a step. M stands for a million grain-steps a second,
-medians of several runs."""
-BENCH = Bench("gpu", "Graphics processors", {arch: partial(study, arch=arch) for arch in ARCHES}, ABOUT)

@@ -1,0 +1,52 @@
+"""cargolab bench gpu: the same grains and water on GPUs and on the CPU, compared in results and in speed."""
+
+from functools import partial
+from pathlib import Path
+
+from lab.base.errors import LabError
+from lab.report.page import Page
+from lab.studies.bench.devices import Device, device
+from lab.studies.bench.gpu import grains, water
+from lab.studies.engine import Bench
+from solvers.machine import runtime
+from solvers.machine.errors import Unavailable
+
+ARCHES = {"cuda": ("f64", "mixed", "f32"), "vulkan": ("f32",)}
+
+
+def study(page: Page, work: Path, fast: bool, arch: str) -> None:
+    """Add the section on one kind of device to the page."""
+    precisions = ARCHES[arch]
+    page.section(arch.upper() if arch == "cuda" else arch.capitalize())
+    found, why_not = there(arch, precisions[-1])
+    if found is None:
+        page.say(f"Not run: {why_not}")
+        return
+    page.say(f"Device: {found.name}{', which is software on the processor' if found.software else ''}.")
+    if found.software and not fast:
+        page.say("""Not run: there is no graphics processor here, and software is none; `cargolab bench gpu --fast`
+            tries it on small beds.""")
+        return
+    for matter in (grains, water):
+        try:
+            matter.correctness(page, work, arch, precisions)
+            matter.speed(page, work, arch, precisions, fast)
+        except LabError as error:
+            page.say(f"It broke off: {error}")
+
+
+def there(arch: str, precision: str) -> tuple[Device | None, str]:
+    """The device of an arch, or none and the reason in a sentence."""
+    try:
+        runtime.choose_arch(arch, precision)
+    except Unavailable as error:
+        return None, str(error)
+    found = device(arch)
+    return found, "" if found else f"the driver of {arch} tells of no device."
+
+
+ABOUT = """Grains and water particle by particle, each on its own, with a launch a step (schedule per-grain): first
+whether a device gives what the processor gives, then how fast it is. M stands for a million particle-steps a second, of
+grains or of particles of water; speeds are medians of several turns. What was not run on a graphics processor is
+marked so. Water runs on CUDA alone: Taichi 1.7.4 cannot compile its kernels for Vulkan."""
+BENCH = Bench("gpu", "Graphics processors", {arch: partial(study, arch=arch) for arch in ARCHES}, ABOUT)
