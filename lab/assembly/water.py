@@ -6,10 +6,11 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
-from lab.preset.sections.water.liquid import bounds, liquid
+from lab.preset.sections.water.liquid import bounds, centre_of_flow, liquid
 from lab.preset.sections.water.tanks import Pool, pools
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Water, Y, Z
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
 from solvers.fluid.start.air import air_above, air_round, with_air
+from solvers.fluid.start.flow import compressed, stirred, torsion, vortex_pressure, vortices
 from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share, surfaces
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
@@ -17,6 +18,8 @@ from solvers.fluid.timestep import steps_of_water
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.tank.outline import moments
+
+VELOCITY = [VELOCITY_Y, VELOCITY_Z]
 
 
 def water_of(preset: Preset) -> dict:
@@ -31,21 +34,38 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     """The particles (n, 6) of the water in a tank, by default the first. Raises LabError if none fits in."""
     pool = pool or pools(preset)[0]
     water = liquid(preset)
-    if preset.parts:  # which a lattice is cut off at; a packing knows nothing of them
+    if preset.parts or water.periodic:  # which a lattice is cut off at, or goes on across; a packing knows of neither
         water = replace(water, start="lattice")
+    borne = preset.water.radius is None and "z" not in water.periodic
     try:
-        drops = at_rest(pool.polygon, pool.level, water, preset.run.gravity)
+        drops = at_rest(pool.polygon, pool.level, water, preset.run.gravity if borne else 0.0)
         if water.air:
             return with_air(drops, _air_of(preset, water))
     except ValueError as error:
         raise LabError(f"water.spacing: {error}; take smaller particles.") from None
+    if preset.water.flow:
+        _set_going(preset, drops)
     return _beside_parts(preset, drops) if preset.parts else drops
+
+
+def _set_going(preset: Preset, drops: np.ndarray) -> None:
+    """Give particles (n, 6) the velocities and the pressure of the flow that they start with."""
+    flow, water, place = preset.water.flow, liquid(preset), drops[:, [Y, Z]]
+    if flow.free:
+        drops[:, VELOCITY] = stirred(place - centre_of_flow(preset), flow.strain, flow.rotation)
+        rate = flow.strain**2 - flow.rotation**2 + flow.pull**2
+        pressure = rate * torsion(bounds(preset)[0], place)
+    else:
+        place, sides = place - np.array(preset.tank.corners).min(axis=0), np.array(preset.tank.extent)
+        drops[:, VELOCITY] = flow.vortices * vortices(place, sides)
+        pressure = flow.vortices**2 * vortex_pressure(place, sides)
+    drops[:, EXCESS] = compressed(pressure, water)
 
 
 def _air_of(preset: Preset, water: Water) -> np.ndarray:
     """The particles (n, 7) of the air, which fills what the water leaves of the tank."""
     tank, (polygon, level) = np.array(preset.tank.corners), bounds(preset)
-    if preset.water.region is None:
+    if preset.water.shape is None:
         return air_above(tank, level, water, preset.run.gravity)
     return air_round(tank, polygon, water, preset.run.gravity)
 

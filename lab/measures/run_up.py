@@ -22,8 +22,8 @@ COLOURS = BLUE, VERMILION, GREEN, GREY
 
 
 def applies(recording: Recording) -> bool:
-    """Every run of water has a highest level."""
-    return True
+    """Every run of water with weight has a highest level."""
+    return recording.preset.run.gravity > 0.0
 
 
 def measure(recording: Recording) -> dict[str, Value]:

@@ -33,8 +33,8 @@ CALM = "the water does not swing"
 
 
 def applies(recording: Recording) -> bool:
-    """The run has enough samples for a spectrum."""
-    return len(recording.series["time"]) > LEAST_SAMPLES
+    """The water has weight, and the run has enough samples for a spectrum."""
+    return recording.preset.run.gravity > 0.0 and len(recording.series["time"]) > LEAST_SAMPLES
 
 
 def measure(recording: Recording) -> dict[str, Value]:

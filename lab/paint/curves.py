@@ -45,7 +45,9 @@ def plots(beds: Sequence[Bed], hues: Sequence[tuple], series: Sequence[tuple] = 
     of_gauges = _of_gauges(wet, hue, series) if wet else []
     carried = any(bed.footage.sea or bed.footage.rail for bed in beds)
     moved = [_of_motion(beds, hues)] if not wet or carried else []
-    return (moved + of_gauges)[:MOST_PLOTS] or [_of_a_body(wet, hue) or _of_the_centre(wet, hue)]
+    return (moved + of_gauges)[:MOST_PLOTS] or [
+        _of_a_body(wet, hue) or _of_a_flow(wet, hue) or _of_the_centre(wet, hue)
+    ]
 
 
 def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
@@ -105,6 +107,17 @@ def _of_a_body(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot | None:
             plot.samples.append(bed.footage.time)
         return plot
     return None
+
+
+def _of_a_flow(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot | None:
+    """The kinetic energy of water that flows at first by itself, of that at the start."""
+    if not beds[0].footage.water.flows:
+        return None
+    plot = Plot(("time (s)", "kinetic energy (%)"))
+    for bed in reversed(beds):
+        energy = _measured(bed, "water_kinetic")
+        plot.add(bed, 100.0 * energy / max(energy[0], 1e-300), hue.get(bed, palette.LINE))
+    return plot
 
 
 def _of_the_centre(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot:

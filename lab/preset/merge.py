@@ -5,13 +5,13 @@ from collections.abc import Mapping
 from lab.base.errors import LabError
 from lab.preset.units import quoted
 
-# Alternative keys of a section: giving one side drops an inherited value of the other.
+# Alternative keys of a section: giving one side drops inherited values of the others.
 ALTERNATIVES = {
     "tank": ({"width", "height"}, {"outline"}),
     "grains": ({"count"}, {"depth"}),
     "material": ({"restitution"}, {"dissipative_time"}),
     "wall": ({"restitution"}, {"dissipative_time"}),
-    "water": ({"depth"}, {"region"}),
+    "water": ({"depth"}, {"region"}, {"radius"}),
     "ship": ({"gyradius"}, {"roll_period"}),
 }
 
@@ -35,7 +35,9 @@ def nested(overrides: Mapping) -> dict:
 def merged(base: Mapping, over: Mapping, path: str = "", alternatives: Mapping = ALTERNATIVES) -> dict:
     """Merge `over` into `base`, table by table; where keys are alternatives, those of `over` win."""
     result = dict(base)
-    for side, other in _both_ways(alternatives.get(path)):
+    sides = alternatives.get(path, ())
+    for side in sides:
+        other = set().union(*sides) - side
         if side & over.keys() and not other & over.keys():
             result = {key: value for key, value in result.items() if key not in other}
     for key, value in over.items():
@@ -44,7 +46,3 @@ def merged(base: Mapping, over: Mapping, path: str = "", alternatives: Mapping =
             value = merged(below, value, f"{path}.{key}" if path else key, alternatives)
         result[key] = value
     return result
-
-
-def _both_ways(pair: tuple[set, set] | None) -> tuple:
-    return () if pair is None else (pair, pair[::-1])

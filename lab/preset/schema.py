@@ -34,6 +34,7 @@ from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.air_checks import check_air
 from lab.preset.sections.water.checks import check_water
+from lab.preset.sections.water.flow_checks import check_weight
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.solids import check_solids
 from lab.preset.sections.water.tanks import check_tanks
@@ -190,6 +191,7 @@ def check(preset: Preset) -> None:
     check_parts(preset.parts, preset.tank.corners, preset.water is not None)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
     check_tanks(preset)
+    check_weight(preset)
     check_water(preset)
     check_air(preset)
     duration = duration_of(preset.run, preset.motion)

@@ -53,6 +53,7 @@ KINDS = {
     "kg": Kind("a mass", "g", "0.15 g"),
     "s": Kind("a time", "s", "0.5 s"),
     "rad": Kind("an angle", "deg", "20 deg"),
+    "1/s": Kind("a rate", "1/s", "100 1/s"),
     "rad/s": Kind("an angular rate", "deg/s", "3 deg/s"),
     "Hz": Kind("a frequency", "Hz", "1.5 Hz"),
     "m/s": Kind("a speed", "m/s", "1 m/s"),

@@ -160,7 +160,9 @@ def _step(simulation: Simulation) -> list[tuple[str, str]]:
 
 def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
     scene, carrier, walls = simulation.scene, simulation.carrier, simulation.walls
-    terms = "gravity"
+    terms = "gravity" if scene.gravity else "none"
+    if scene.water and scene.water.pull:
+        terms = "pull to a point"
     if carrier.moving:
         terms += ", translation"
     if carrier.rotating:

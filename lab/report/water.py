@@ -12,7 +12,7 @@ from lab.measures.water_residual import residual
 from lab.preset.accuracy import LEVELS
 from lab.preset.schema import Preset
 from lab.preset.sections.water.air import REAL_SOUND
-from lab.preset.sections.water.liquid import depth, expected_speed, layers, liquid, parted
+from lab.preset.sections.water.liquid import centre_of_flow, depth, expected_speed, layers, liquid, parted
 from lab.preset.units import show
 from lab.recording import Recording
 from lab.report.numbers import count_of
@@ -36,11 +36,30 @@ def described(preset: Preset, scene: Scene) -> Rows:
     ]
     if scene.water.air:
         rows.append(("air", _air(scene)))
+    if preset.water.flow:
+        rows.append(("flow", _flow(preset)))
+    if scene.water.periodic:
+        rows.append(("periodic", f"space repeats itself along {' and '.join(scene.water.periodic)}"))
     if preset.gauges:
         kinds = zip(("pressure", "level", "force"), (pressure, level, force), strict=True)
         names = [f"{name} of {kind}" for kind, gauges in kinds for name in gauges]
         rows.append(("gauges", ", ".join(names)))
     return rows
+
+
+def _flow(preset: Preset) -> str:
+    """How the water moves at first, and what pulls at it."""
+    flow = preset.water.flow
+    told = {
+        "strained by": (flow.strain, "1/s"),
+        "turns by": (flow.rotation, "rad/s"),
+        "vortices of": (flow.vortices, "m/s"),
+    }
+    parts = [f"{words} {show(value, unit)}" for words, (value, unit) in told.items() if value]
+    if flow.pull:
+        y, z = (show(round(x, 9), "m") for x in centre_of_flow(preset))
+        parts.append(f"pulled by Ω² r, Ω = {flow.pull:g} rad/s, to [{y}, {z}]")
+    return ", ".join(parts) or "none"
 
 
 def models(scene: Scene) -> Rows:

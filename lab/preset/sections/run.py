@@ -35,7 +35,7 @@ class Run:
         Doc("Level of accuracy, which sets the grains' stiffness and step, or the spacing of the water."),
     ] = DEFAULT
     gravity: Annotated[
-        float, Unit("m/s^2"), Interval(gt=0), Usual(0.1, 9.81, "m/s^2"), Doc("Acceleration of gravity.")
+        float, Unit("m/s^2"), Interval(ge=0), Usual(0.1, 9.81, "m/s^2"), Doc("Acceleration of gravity; 0: none.")
     ] = 9.81
     settle_limit: Annotated[Time, Doc("Longest time for settling.")] = 5.0
     rest: Annotated[

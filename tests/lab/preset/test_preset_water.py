@@ -117,7 +117,7 @@ def test_a_recorded_preset_beyond_the_limits_is_refused(key, value):
 
 
 FAULTS = {
-    "neither": ({"water__depth": False}, "water.depth: give exactly one of depth and region (got neither)."),
+    "neither": ({"water__depth": False}, "water.depth: give exactly one of depth, region and radius (got none)."),
     "negative depth": ({"water__depth": "-1 mm"}, "water.depth: must be greater than 0 (got -1 mm)."),
     "no unit": ({"water__depth": 0.1}, 'water.depth: 0.1 has no unit; a length is needed, e.g. "3 mm".'),
     "too deep": ({"water__depth": "600 mm"}, "water.depth: 600 mm is more than the tank's height, 500 mm."),
@@ -296,7 +296,10 @@ def test_a_gate_beside_a_corner_is_allowed():
 def test_both_depth_and_region_are_refused_in_one_table_but_the_later_wins_over_a_base():
     table = tomllib.loads(TANK)
     table["water"]["region"] = COLUMN
-    assert error_of(lambda: resolve(table)) == "water.depth: give exactly one of depth and region (got both)."
+    assert (
+        error_of(lambda: resolve(table))
+        == "water.depth: give exactly one of depth, region and radius (got depth and region)."
+    )
     assert wet(water__region=COLUMN).water.depth is None
 
 

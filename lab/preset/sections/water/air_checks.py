@@ -45,7 +45,7 @@ def check_air(preset: Whole) -> None:
     _check_viscosity(air, liquid(preset).viscosity)
     if air.density > water.density:
         raise LabError(f"air.density: {show(air.density, 'kg/m^3')} is more than that of the water; take less.")
-    room = tank.extent[1] - (depth(preset) if water.region is None else 0.0)
+    room = tank.extent[1] - (depth(preset) if water.shape is None else 0.0)
     if room < liquid(preset).spacing:
         raise LabError(
             "air: the water leaves it no room of a particle's height; take less water, or smaller particles."
@@ -79,7 +79,7 @@ def _check_stiffening(preset: Whole) -> None:
 
 def _check_sound(preset: Wet) -> None:
     """Raise LabError for air whose sound is so slow that its own weight or cohesion would compress it to nothing."""
-    air, room = preset.air, preset.tank.extent[1] - (depth(preset) if preset.water.region is None else 0.0)
+    air, room = preset.air, preset.tank.extent[1] - (depth(preset) if preset.water.shape is None else 0.0)
     slow = float(np.sqrt((GAMMA - 1.0) * preset.run.gravity * room)) / SLOWEST
     made = liquid(preset).softened
     sound, pulled = made.air.sound_speed, Cohesion.slowest(made.air.cohesion, air.density) / COHERENT

@@ -5,9 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.outline import Point, area, simple_polygon, stands_out
+from lab.preset.outline import Point, area, stands_out
 from lab.preset.sections.tank import Tank
 from lab.preset.sections.water import liquid
+from lab.preset.sections.water.flow_checks import check_flow, check_periodic
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.tanks import pools
@@ -39,17 +40,19 @@ def check_water(preset: Whole) -> None:
     _check_given(preset)
     if water.depth is not None:
         _check_depth(water, tank)
-    elif water.region is not None:
-        _check_region(water, tank)
+    else:
+        _check_shape(water, tank)
     _check_spacing(preset)
     _check_sound(preset)
     _check_background(preset)
     _check_gauges(preset.gauges, tank)
+    check_flow(preset)
+    check_periodic(preset)
 
 
 def _check_company(preset: Whole) -> None:
     """Raise LabError for what is in the tank beside water, or carries it, and the solver cannot compute."""
-    if preset.grains is not None and (preset.water.depth or preset.water.region):
+    if preset.grains is not None and any(given_of(preset.water).values()):
         raise LabError(
             "water: grains and water in one tank are not computed yet; leave out [grains] or [water], or give the "
             "water a tank of its own, [tanks.NAME]."
@@ -59,19 +62,29 @@ def _check_company(preset: Whole) -> None:
         raise LabError(f'water.model: "{named}" is for tanks in a ship; add a table [ship], or take "sph".')
     if preset.air is not None and preset.ship is not None:
         raise LabError("air: air in a ship's tanks is not computed yet; leave out [air] or [ship].")
-    if preset.water.region and preset.ship is not None:
-        raise LabError("water.region: a ship starts with level water; give a depth.")
+    if preset.ship is not None:
+        for name in ("region", "radius"):
+            if getattr(preset.water, name) is not None:
+                raise LabError(f"water.{name}: a ship starts with level water; give a depth.")
     if preset.run.repeats > 1 and preset.grains is None:
         raise LabError("run.repeats: water starts without chance, so that all repeats would be the same; take one.")
 
 
+def given_of(water: Water) -> dict[str, object]:
+    """What says where the water of the first tank is, by the keys that are given."""
+    names = "depth", "region", "radius"
+    return {name: getattr(water, name) for name in names if getattr(water, name) is not None}
+
+
 def _check_given(preset: Whole) -> None:
     """Raise LabError unless it is said where the water is."""
-    depth, region = preset.water.depth, preset.water.region
-    elsewhere = any(tank.depth is not None for tank in preset.tanks.values())
-    if (depth is not None and region is not None) or (depth is None and region is None and not elsewhere):
-        got = "neither" if depth is None else "both"
-        raise LabError(f"water.depth: give exactly one of depth and region (got {got}).")
+    given, elsewhere = given_of(preset.water), any(tank.depth is not None for tank in preset.tanks.values())
+    if len(given) > 1 or not (given or elsewhere):
+        got = " and ".join(given) or "none"
+        raise LabError(f"water.depth: give exactly one of depth, region and radius (got {got}).")
+    if ("radius" in given) != (preset.water.centre is not None):
+        what = f"missing for a drop; {needed('m')}, twice" if given.get("radius") else "goes with radius; leave it out"
+        raise LabError(f"water.centre: {what}.")
 
 
 def _check_models(water: Water) -> None:
@@ -98,16 +111,19 @@ def _check_depth(water: Water, tank: Tank) -> None:
         raise LabError(f"water.full: the water is {deep} deep in a tank {high} high; it must fill a tank with a lid.")
 
 
-def _check_region(water: Water, tank: Tank) -> None:
+def _check_shape(water: Water, tank: Tank) -> None:
+    key = "water.region" if water.region is not None else "water.radius"
+    try:
+        shape = water.shape
+    except LabError as error:
+        raise LabError(f"{key}: {error}") from None
+    if shape is None:
+        return
     if water.full:
         raise LabError("water.full: goes with a depth; water in a region has room to flow.")
-    try:
-        region = simple_polygon(water.region)
-    except LabError as error:
-        raise LabError(f"water.region: {error}") from None
-    out = stands_out(np.array(region), np.array(tank.corners))
+    out = stands_out(shape, np.array(tank.corners))
     if out is not None:
-        raise LabError(f"water.region: it reaches out of the tank at {_place(out)}; keep it inside.")
+        raise LabError(f"{key}: it reaches out of the tank at {_place(out)}; keep it inside.")
 
 
 def _check_spacing(preset: Whole) -> None:
@@ -121,7 +137,7 @@ def _check_spacing(preset: Whole) -> None:
             f"{show(size, 'm')} {which}."
         )
     of_all = area([tuple(point) for point in polygon.tolist()])
-    if water.region is None:
+    if water.shape is None:
         of_all *= min(1.0, deep / float(np.ptp(polygon[:, 1])))
     size = deep if water.spacing == "auto" else water.spacing
     if of_all > MOST_PARTICLES * size**2:
@@ -130,7 +146,8 @@ def _check_spacing(preset: Whole) -> None:
 
 def _check_sound(preset: Whole) -> None:
     """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
-    head = preset.run.gravity * max(pool.depth for pool in pools(preset))
+    borne = preset.water.radius is None and "z" not in (preset.water.periodic or "")
+    head = borne * preset.run.gravity * max(pool.depth for pool in pools(preset))
     sound = liquid.liquid(preset).sound_speed
     if head > COMPRESSED * sound**2:
         least = show((head / COMPRESSED) ** 0.5, "m/s")

@@ -22,6 +22,7 @@ from solvers.fluid import given
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.walls.layers import edge_of
+from solvers.tank.outline import moments
 
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
@@ -64,6 +65,9 @@ def liquid(preset: Wet) -> given.Water:
         model=water.model,
         swing_damping=water.swing_damping,
         added_mass=water.added_mass,
+        walls=water.periodic != "yz",
+        periodic=tuple(water.periodic or ""),
+        pull=given.Pull(water.flow.pull, centre_of_flow(preset)) if water.flow and water.flow.pull else None,
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
@@ -134,15 +138,33 @@ def spacing(preset: Wet) -> float:
 
 
 def expected_speed(preset: Wet) -> float:
-    """The highest speed (m/s) to be expected: of long waves, √(gH), of a column that collapses, 2 √(gH), of the tank.
+    """The highest speed (m/s) to be expected: of long waves, √(gH), of a column that collapses, 2 √(gH), of its
+    own flow at first, of the tank.
 
     H is the height of the water's surface over the tank's lowest point, that of the deepest tank.
     """
     height = max(pool.depth for pool in pools(preset))
-    if preset.water.region is not None:
+    if preset.water.shape is not None:
         height = max(height, bounds(preset)[1] - min(z for _, z in preset.tank.corners))
-    wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.region is None else FRONT)
-    return max([wave, tank_speed(preset), *(part.wet.fastest() for part in preset.parts.values())])
+    wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.shape is None else FRONT)
+    return max([wave, flow_speed(preset), tank_speed(preset), *(part.wet.fastest() for part in preset.parts.values())])
+
+
+def centre_of_flow(preset: Wet) -> tuple[float, float]:
+    """The point (m) that water is strained from, turns about and is pulled to."""
+    return preset.water.flow.centre or preset.water.centre or moments(bounds(preset)[0])[1]
+
+
+def flow_speed(preset: Wet) -> float:
+    """Bound (m/s) on the speed of the water by the flow that it starts with: of that farthest out, of each part."""
+    flow, corners = preset.water.flow, bounds(preset)[0]
+    if flow is None:
+        return 0.0
+    if not flow.free:
+        width, height = preset.tank.extent
+        return flow.vortices * max(1.0, height / width)
+    farthest = float(np.hypot(*(corners - centre_of_flow(preset)).T).max())
+    return farthest * (abs(flow.strain) + abs(flow.rotation) + flow.pull)
 
 
 def tank_speed(preset: Wet) -> float:

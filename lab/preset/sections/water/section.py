@@ -1,8 +1,13 @@
 """The water in the tank, and its gauges, as a preset gives them."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, Literal
 
+import numpy as np
+
+from lab.preset.outline import simple_polygon
+from lab.preset.sections.water.flow import Flow
 from lab.preset.sections.water.schemes import SCHEMES
 from solvers.fluid.diffusion import DIFFUSION
 from solvers.fluid.kernels import KERNELS
@@ -13,15 +18,17 @@ from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
+SIDES = 160  # of the polygon in place of a circle: 3e-4 less area
 
 
 @dataclass(frozen=True)
 class Water:
     """Water in the plane as particles: weakly compressible, δ-SPH.
 
-    It stands level up to its `depth`, or fills a `region`, such as a column that collapses; at rest in either case.
-    The spacing is rounded so that a whole number of particles makes up the depth, or the height of the region. The
-    models that are not given are those of the `scheme`, see `lab.preset.sections.water.schemes`.
+    It stands level up to its `depth`, or fills a `region`, such as a column that collapses, or is a round drop of a
+    `radius`; at rest, unless there is a `flow`. The spacing is rounded so that a whole number of particles makes up the
+    depth, or the height of the region. The models that are not given are those of the `scheme`, see
+    `lab.preset.sections.water.schemes`.
     """
 
     depth: Annotated[
@@ -46,6 +53,18 @@ class Water:
     region: Annotated[
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
         Doc("Corners, y and z each, of the part of the tank that is filled with water, in place of `depth`."),
+    ] = None
+    radius: Annotated[Length | None, Doc("Radius of a round drop, in place of `depth`.")] = None
+    centre: Annotated[
+        Annotated[tuple[float, float], Unit("m")] | None, Doc("Middle of this drop, y and z in the tank.")
+    ] = None
+    flow: Annotated[Flow | None, Doc("How the water moves at first; it is at rest without it.")] = None
+    periodic: Annotated[
+        Literal["y", "z", "yz"] | None,
+        Doc(
+            "Axes along which space repeats itself with the width or height of the tank, a rectangle, which has no "
+            "walls there."
+        ),
     ] = None
     spacing: Annotated[
         Length | Literal["auto"],
@@ -96,6 +115,14 @@ class Water:
         Literal[*STARTS],
         Doc("How the particles are laid: packed evenly up to walls of any slant, or as a square lattice."),
     ] = "packed"
+
+    @cached_property
+    def shape(self) -> np.ndarray | None:
+        """The polygon (m, 2) m of a region or a drop; None where the water stands level. Raises LabError."""
+        if self.radius is not None:
+            turns = 2.0 * np.pi * np.arange(SIDES) / SIDES
+            return np.array(self.centre) + self.radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+        return None if self.region is None else np.array(simple_polygon(self.region))
 
 
 @dataclass(frozen=True)

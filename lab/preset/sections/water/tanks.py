@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.outline import simple_polygon, stands_out
+from lab.preset.outline import stands_out
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.tank import FurtherTank, Tank, check_tank
 from lab.preset.sections.water.section import Water
@@ -36,16 +36,15 @@ class Pool:
 
     @property
     def depth(self) -> float:
-        """Depth (m) of the water, or height of its region."""
+        """Depth (m) of the water, or height of its region or drop."""
         return self.level - float(self.polygon[:, 1].min())
 
 
 def pools(preset: Tanked) -> list[Pool]:
     """The water of each tank that has some, in the axes of the first tank; the first tank's is first."""
     water, outline, found = preset.water, np.array(preset.tank.corners), []
-    if water.region is not None:
-        region = np.array(simple_polygon(water.region))
-        found.append(Pool(0, region, float(region[:, 1].max())))
+    if water.shape is not None:
+        found.append(Pool(0, water.shape, float(water.shape[:, 1].max())))
     elif water.depth is not None:
         found.append(Pool(0, outline, float(outline[:, 1].min()) + water.depth))
     for number, tank in enumerate(preset.tanks.values(), start=1):

@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
+from lab.measures.free_flow import ellipse, swing_period
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.water.drawing import courses
 from lab.studies.verify.water.scenes import LATTICE, box, filled, looks, order_line, scene, seen, simulated, swing
 from solvers.fluid.given import VOLUME, Pull, Water
+from solvers.fluid.start.flow import stirred
 from solvers.fluid.start.packing import packed
 
 SECTION = "Water: drops"
@@ -36,18 +37,8 @@ class Course:
 
 
 def exact(strain: float, rate: float, times: np.ndarray) -> np.ndarray:
-    """Half axes (T, 2) m of a drop with u = σ (y, −z), σ = `strain` at first, pulled with −Ω² r, Ω = `rate` (1/s).
-
-    σ' = (σ² + Ω²)(b² − a²)/(a² + b²), a' = σ a, b' = −σ b (Monaghan & Rafiee 2013, eq. 4.3); by DOP853 at 1e-12.
-    """
-
-    def motion(_, state):
-        s, a, b = state
-        return [(s * s + rate * rate) * (b * b - a * a) / (a * a + b * b), s * a, -s * b]
-
-    start = [strain, RADIUS, RADIUS]
-    path = solve_ivp(motion, (0.0, times[-1]), start, "DOP853", t_eval=times, rtol=1e-12, atol=1e-12)
-    return path.y[1:].T
+    """Half axes (T, 2) m of a drop with u = σ (y, −z), σ = `strain` at first, pulled with −Ω² r, Ω = `rate` (1/s)."""
+    return RADIUS * ellipse(strain, rate, times)
 
 
 def strained(count: int, strain: float, rate: float, sound: float, times: np.ndarray, alpha: float) -> Course:
@@ -61,7 +52,7 @@ def strained(count: int, strain: float, rate: float, sound: float, times: np.nda
     drops = filled(
         place,
         water,
-        lambda r: strain * r * [1.0, -1.0],
+        lambda r: stirred(r, strain, 0.0),
         lambda r: squeezed * (RADIUS**2 - (r**2).sum(axis=1)),
     )
     drops[..., VOLUME] = packing.volume
@@ -75,7 +66,7 @@ def strained(count: int, strain: float, rate: float, sound: float, times: np.nda
     return Course(time, axes, lost)
 
 
-def ellipse(fast: bool) -> Found:
+def freely(fast: bool) -> Found:
     """A drop in free flight that is strained at 100/s (Monaghan 1994, eq. 4.4; half axes at 7.6 ms by integration)."""
     counts, times = ACROSS[:1] if fast else ACROSS, np.linspace(0.0, UNTIL, 20)[1:]
     runs = [strained(count, STRAIN, 0.0, SOUND, times, 0.01) for count in counts]
@@ -120,12 +111,10 @@ def pulled(fast: bool) -> Found:
 
 def length(run: Course) -> float:
     """Period (s): from the start to where the difference of the axes, zero at first, has risen through zero again."""
-    gap = run.axes[:, 0] - run.axes[:, 1]
-    rises = np.flatnonzero((gap[:-1] < 0.0) & (gap[1:] >= 0.0))
-    if len(rises):
-        k = rises[0]
-        return float(run.time[k] - gap[k] * (run.time[k + 1] - run.time[k]) / (gap[k + 1] - gap[k]))
-    return float(run.time[-1] - gap[-1] * (run.time[-1] - run.time[-2]) / (gap[-1] - gap[-2]))  # just before the end
+    found, gap = swing_period(run.time, run.axes, RATE), run.axes[-2:, 0] - run.axes[-2:, 1]
+    if np.isfinite(found):
+        return found
+    return float(run.time[-1] - gap[1] * (run.time[-1] - run.time[-2]) / (gap[1] - gap[0]))  # just before the end
 
 
 def small(fast: bool) -> Found:
@@ -145,7 +134,7 @@ def small(fast: bool) -> Found:
 
 
 CASES = (
-    Case("water-ellipse", SECTION, "A strained drop", ellipse),
+    Case("water-ellipse", SECTION, "A strained drop", freely),
     Case("water-pulled", SECTION, "A drop pulled to a point", pulled),
     Case("water-pulled-small", SECTION, "Small swings of a drop pulled to a point", small),
 )

@@ -10,12 +10,12 @@ from lab.studies.verify.water.drawing import shapes
 from lab.studies.verify.water.scenes import box, filled, grid, looks, order_line, scene, simulated
 from lab.studies.verify.water.vorticity import middle_pressure
 from solvers.fluid.given import Water
+from solvers.fluid.start.flow import stirred, torsion
 
 SECTION = "Water: drops"
 SIDE, RATE = 1.0, 1.0  # m, rad/s
 SOUND = 15.0 * RATE * SIDE / np.sqrt(2.0)
 ACROSS, TIMES = (32, 64, 96), (0.5, 1.0, 1.5, 2.0)  # particles; s
-SUM = 41  # largest number of the waves in the series
 CORE = 0.25  # m: the radius of the middle, where the pressure is lowest
 MIDST = 0.15  # m: the radius within which a parabola is laid through the pressure
 FOLLOWED = (0.5, 1.0)  # s: times at which there is a reference of the pressure
@@ -33,23 +33,12 @@ class Patch:
     middle: np.ndarray  # pressure (2,) in the middle at FOLLOWED over ρ ω² L²
 
 
-def pressure(place: np.ndarray) -> np.ndarray:
-    """Pressure (Pa) of the patch at first, which solves ∇²p = 2 ρ ω² with p = 0 at its edges (Le Touzé et al. 2013).
-
-    −Σ 32 ρ ω² sin(nπy/L) sin(mπz/L)/(n m π² ((nπ/L)² + (mπ/L)²)) over odd n and m, y and z from a corner: below zero.
-    """
-    wave = np.arange(1, SUM + 1, 2)
-    along_y, along_z = (np.sin(np.pi * wave * (c[:, None] / SIDE + 0.5)) for c in place.T)
-    n, m = np.meshgrid(wave, wave, indexing="ij")
-    weight = -32.0 / (n * m * np.pi**2 * (np.pi / SIDE) ** 2 * (n**2 + m**2))
-    return 1000.0 * RATE**2 * np.einsum("in,nm,im->i", along_y, weight, along_z)
-
-
 def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
     """A patch of so many particles across, without walls and gravity."""
     water = Water(SIDE / count, SOUND, alpha=0.01, walls=False, shifting=shifting, speed=RATE * SIDE / np.sqrt(2.0))
     place = grid(SIDE, SIDE, water.spacing) - 0.5 * SIDE
-    drops = filled(place, water, lambda r: RATE * np.stack([-r[:, 1], r[:, 0]], axis=1), pressure)
+    under = -1000.0 * RATE**2 * torsion(0.5 * SIDE * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]), place)
+    drops = filled(place, water, lambda r: stirred(r, 0.0, RATE), lambda _: under)
     corner = [np.argmax(place @ [a, b]) for a in (-1, 1) for b in (-1, 1)]
     start = np.hypot(*place[corner].T)
     places, turning, holes, distances, pressures = [], [], [], [], []

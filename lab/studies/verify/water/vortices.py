@@ -15,9 +15,12 @@ from lab.studies.verify.water.scenes import (
     simulated,
 )
 from solvers.fluid.given import Water
+from solvers.fluid.start.flow import vortex_pressure
+from solvers.fluid.start.flow import vortices as vortices_in
 
 SECTION = "Water: viscous flow"
 SIDE, SPEED, REYNOLDS = 1.0, 1.0, 100.0  # m, m/s
+BOX = SIDE, SIDE
 NU = SIDE * SPEED / REYNOLDS
 K = 2.0 * np.pi / SIDE
 ACROSS, UNTIL = (40, 60, 100), 0.5  # particles; s
@@ -31,13 +34,7 @@ FOURIER = 40
 
 def swirl(place: np.ndarray) -> np.ndarray:
     """Velocities (n, 2) of Taylor and Green's vortices, 1 at most."""
-    y, z = K * place.T
-    return np.stack([-np.cos(y) * np.sin(z), np.sin(y) * np.cos(z)], axis=1)
-
-
-def swirl_pressure(place: np.ndarray) -> np.ndarray:
-    """−ρ U²/4 (cos 2ky + cos 2kz), in Pa."""
-    return -250.0 * SPEED**2 * np.cos(2.0 * K * place).sum(axis=1)
+    return vortices_in(place, BOX)
 
 
 def decayed(count: int) -> float:
@@ -53,7 +50,9 @@ def decayed(count: int) -> float:
         shifting="delta-plus",
         speed=SPEED,
     )
-    drops = filled(grid(SIDE, SIDE, water.spacing), water, lambda place: SPEED * swirl(place), swirl_pressure)
+    drops = filled(
+        grid(*BOX, water.spacing), water, lambda r: SPEED * swirl(r), lambda r: 1000.0 * vortex_pressure(r, BOX)
+    )
     outline = SIDE * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     with simulated(scene(water, drops, outline, WEIGHTLESS)) as run:
         (time,) = looks(run, [UNTIL])
