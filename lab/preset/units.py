@@ -53,9 +53,9 @@ KINDS = {
     "kg": Kind("a mass", "g", "0.15 g"),
     "s": Kind("a time", "s", "0.5 s"),
     "rad": Kind("an angle", "deg", "20 deg"),
-    "1/s": Kind("a rate", "1/s", "100 1/s"),
     "rad/s": Kind("an angular rate", "deg/s", "3 deg/s"),
     "Hz": Kind("a frequency", "Hz", "1.5 Hz"),
+    "1/s": Kind("a rate", "1/s", "100 1/s"),  # after Hz, by which a wrong unit of both is named
     "m/s": Kind("a speed", "m/s", "1 m/s"),
     "m/s^2": Kind("an acceleration", "m/s^2", "9.81 m/s^2"),
     "kg/m^3": Kind("a density", "kg/m^3", "1319 kg/m^3"),

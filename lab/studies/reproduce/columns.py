@@ -10,17 +10,21 @@ from lab.studies.reproduce.water.costs import COSTS, cost
 
 
 class Column(BaseModel):
-    """A number of every run under a `head`: which (`of`, `given`) as in a claim, and how it is written."""
+    """A number of every run under a `head`: which (`of`, `given`) as in a claim, and how it is written.
+
+    `shows` may ask for the number's own `error` and its `note`; `missing` stands for a number that a run has not.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
     head: str
     of: str
     given: float | list[float] | None = None
     shows: str = ""
+    missing: str = "none"
 
 
 def table(columns: Sequence[Column], found: Mapping[str, Sequence[Outcome]]) -> list[list[str]]:
-    """The table of runs of water, its heads first; "none" for a number that a run has not."""
+    """The table of runs of water, its heads first."""
     made = [[*COSTS, *(one.head for one in columns)]]
     for run, outcomes in found.items():
         made.append([*cost(run, outcomes[0]), *(_cell(one, run, outcomes) for one in columns)])
@@ -29,6 +33,9 @@ def table(columns: Sequence[Column], found: Mapping[str, Sequence[Outcome]]) -> 
 
 def _cell(column: Column, run: str, outcomes: Sequence[Outcome]) -> str:
     number = number_of(run, column.of, outcomes, column.given)
-    if number.value is None or number.value.value is None:
-        return "none"
-    return column.shows.format(number.value.value) if column.shows else number.text()
+    value = number.value
+    if value is None or value.value is None:
+        return column.missing
+    if not column.shows:
+        return number.text()
+    return column.shows.format(value.value, error=value.uncertainty, note=value.note)

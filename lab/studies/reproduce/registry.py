@@ -11,8 +11,19 @@ from lab.studies.reproduce import figures
 from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ships import capsizes, coupled, damping, low_sides, rolls, section, tuning
-from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, response, sinking, surfaces, waves
+from lab.studies.reproduce.ships import breaking, capsizes, coupled, damping, low_sides, rolls, section, tuning
+from lab.studies.reproduce.water import (
+    chamfer,
+    dam_break,
+    damper,
+    drag,
+    impact,
+    prismatic,
+    response,
+    sinking,
+    surfaces,
+    waves,
+)
 
 
 def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[Sequence[Outcome], object], Value]:
@@ -22,7 +33,7 @@ def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[S
 # Numbers of single runs without scatter from bed to bed; NaN where a run has none.
 OF_ONE_RUN = {
     name: _alone(*number)
-    for of in (impact, dam_break, waves, damper, prismatic, drag, sinking, surfaces, coupled)
+    for of in (impact, dam_break, waves, damper, prismatic, chamfer, drag, sinking, surfaces, coupled, breaking)
     for name, number in of.NUMBERS.items()
 }
 DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
@@ -31,6 +42,7 @@ DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
     "onset": beds.onset,
     "early_shift": outlines.early_shift,
     "early_range": outlines.early_range,
+    "peak_at": prismatic.peak_at,
 }
 ROWS: Mapping[str, Callable[[Found], list[Row]]] = {
     "stack_lag": stack.stack_lag,
@@ -40,6 +52,7 @@ ROWS: Mapping[str, Callable[[Found], list[Row]]] = {
     "section_amplitudes": section.section_amplitudes,
     "order of roll": coupled.order_of_roll,
     "tank tuning": tuning.rows,
+    "chamfers": chamfer.rows,
 }
 FIGURES: Mapping[str, Callable] = {
     "shift": figures.shift,
@@ -60,6 +73,7 @@ FIGURES: Mapping[str, Callable] = {
     "profiles": surfaces.profiles,
     "waves": surfaces.waves,
     "pressures at P1": prismatic.figure,
+    "chamfers": chamfer.figure,
     "coupled response": coupled.figure,
     "coupled spectra": coupled.spectra,
     "coupled heave and roll": coupled.heave_and_roll,

@@ -7,7 +7,7 @@ import numpy as np
 from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.gauges import probes
-from solvers.fluid.walls.layers import edge_of, faces, firm, layers, straight
+from solvers.fluid.walls.layers import edge_of, faces, firm, layers, sharp, straight
 from solvers.space.axes import NAMES
 from solvers.tank.tank import Tank
 
@@ -18,7 +18,7 @@ class Behind:
     """Dummies and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
 
     `along` (n, 2) are unit vectors along the faces before them (`faces`), zero of probes; `straight` (n, 2) are those
-    of straight faces alone (`straight`).
+    away from all corners, `sliding` (n, 2) those away from `sharp` corners, which point into the water, else zero.
     An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
     numbers, `open` what dummies leave of their kernels. Gauges are in the first tank that has water. `fills` are the
     numbers of particles in each tank; none stands behind a dry one.
@@ -29,7 +29,7 @@ class Behind:
         self.open: list[np.ndarray] = []
         self.points, self.volumes, self.firm = np.zeros((0, 2)), np.zeros(0), np.zeros(0)
         self.edges, self.tanks = np.zeros(0, dtype=int), np.zeros(0, dtype=int)
-        self.along = self.straight = np.zeros((0, 2))
+        self.along = self.straight = self.sliding = np.zeros((0, 2))
         wet = [number for number, fill in enumerate(fills) if fill]
         for number in wet if water.walls else ():
             points, volumes, depths = _round(water, tanks[number])
@@ -38,6 +38,8 @@ class Behind:
             self.along = np.concatenate([self.along, along])
             away = straight(points, along, tanks[number].outline, water.reach)
             self.straight = np.concatenate([self.straight, away])
+            ends = sharp(tanks[number].outline)
+            self.sliding = np.concatenate([self.sliding, straight(points, along, ends, water.reach)])
             hold = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
             self.firm = np.append(self.firm, hold)
         if not len(self.points):
@@ -53,6 +55,7 @@ class Behind:
             self._add(of_gauge, none, np.full(len(of_gauge), OF_NONE), wet[0])
             self.firm, self.along = np.append(self.firm, none), np.concatenate([self.along, 0.0 * of_gauge])
             self.straight = np.concatenate([self.straight, 0.0 * of_gauge])
+            self.sliding = np.concatenate([self.sliding, 0.0 * of_gauge])
 
     def _add(self, points: np.ndarray, volumes: np.ndarray, edges: np.ndarray, tank: int) -> None:
         self.points, self.volumes = np.concatenate([self.points, points]), np.append(self.volumes, volumes)

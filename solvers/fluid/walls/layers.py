@@ -6,6 +6,7 @@ import numpy as np
 
 NEARER = 0.25  # spacings by which a dummy may be nearer to a wall than its layer is
 FAR = 1.5  # kernels' reaches from a corner: there no dummy sees water that another wall ends
+SHARP = np.pi / 6.0  # by which a face turns away at an end: round a smoother one water slides
 FIRM = 1  # the layer that holds what has come through the face; the layer before it has gaps there
 
 
@@ -97,8 +98,15 @@ def deep(points: np.ndarray, along: np.ndarray, corners: np.ndarray) -> np.ndarr
 
 def straight(points: np.ndarray, along: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
     """`along` (n, 2) of dummies at `points` (n, 2) m, zero near the `corners` (m, 2) m; `reach` (m) is the kernel's."""
-    away = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1)
+    away = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1, initial=np.inf)
     return along * (away > FAR * reach)[:, None]
+
+
+def sharp(corners: np.ndarray) -> np.ndarray:
+    """Those corners (k, 2) of a counter-clockwise polygon (m, 2) m where it turns right by more than SHARP."""
+    before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+    turns = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
+    return corners[turns < -SHARP]
 
 
 def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ import taichi as ti
 
 from solvers.fluid.given import Water
 from solvers.fluid.state import UNUSED, Particles
+from solvers.fluid.walls.layers import FAR
 from solvers.fluid.walls.solids import is_solid
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_MIDDLE, AT_START
@@ -15,7 +16,9 @@ from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 
 Y, Z, COSINE, SINE, V_Y, V_Z, RATE = range(7)  # a pose in the tank: its origin (m), its turn, its velocities
-LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH = range(6)  # a plate: a point (m), its direction, its ends (m) from there
+# A plate: a point (m), its direction, its ends (m) from there, how far (m) its ends reach on into walls.
+LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH, IN_LOW, IN_HIGH = range(8)
+OF_LINE = 8  # numbers
 REACH, TOUCH, BLUR = range(3)  # of `lengths`
 TOUCHES = 0.25  # spacings between a plate's end and a wall from which on no water passes between them
 
@@ -49,7 +52,7 @@ class Sight:
             self.drawn = own.holding("drawn", lines, "plate number", own.exact)
             edges = np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)])
             self.edges, self.outline = len(edges), own.holding("outline", edges, "edge number", own.exact)
-            each = Axis("world", worlds), Axis("plate", len(self.plates)), Axis("number", 12)
+            each = Axis("world", worlds), Axis("plate", len(self.plates)), Axis("number", 2 * OF_LINE)
             (self.line,) = own.reals(each, "line", kept=False)
 
     def join(self, arrays: State, particles: Particles, owner: np.ndarray, first: ti.Field) -> None:
@@ -69,7 +72,7 @@ class Sight:
     @ti.func
     def note_line(self, w, q: ti.template(), poses: ti.template(), part: ti.template()):
         """Note where a plate is, and whether its ends touch the tank's wall."""
-        first, at, k = ti.static(6 * part), ti.static(7 * part), self.plates[q]
+        first, at, k = ti.static(OF_LINE * part), ti.static(7 * part), self.plates[q]
         cos, sin = poses[w, k, at + COSINE], poses[w, k, at + SINE]
         y = [poses[w, k, at + Y] + cos * self.drawn[q, n] - sin * self.drawn[q, n + 1] for n in ti.static((0, 2))]
         z = [poses[w, k, at + Z] + sin * self.drawn[q, n] + cos * self.drawn[q, n + 1] for n in ti.static((0, 2))]
@@ -77,10 +80,11 @@ class Sight:
         values = [y[0], z[0], (y[1] - y[0]) / length, (z[1] - z[0]) / length]
         for n in ti.static(range(4)):
             self.line[w, q, first + n] = ti.cast(values[n], self.particles.real)
-        low = ti.select(self.touching(y[0], z[0]), 0.0 - self.lengths[REACH], 0.0)
-        high = ti.select(self.touching(y[1], z[1]), length + self.lengths[REACH], length)
-        self.line[w, q, first + LOW] = ti.cast(low, self.particles.real)
-        self.line[w, q, first + HIGH] = ti.cast(high, self.particles.real)
+        low = ti.select(self.touching(y[0], z[0]), self.lengths[REACH], 0.0)
+        high = ti.select(self.touching(y[1], z[1]), self.lengths[REACH], 0.0)
+        ends = [0.0 - low, length + high, low, high]
+        for n in ti.static(range(4)):
+            self.line[w, q, first + LOW + n] = ti.cast(ends[n], self.particles.real)
 
     @ti.func
     def touching(self, y, z):
@@ -109,7 +113,7 @@ class Sight:
         share, reach = p.ones(), ti.cast(self.lengths[REACH], p.real)
         sharp = ti.cast(1.0 / self.lengths[BLUR], p.real)
         for q in ti.static(range(len(self.plates))):
-            first = ti.static(6 * part)
+            first = ti.static(OF_LINE * part)
             t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
             y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
             across = t_y * z - t_z * y
@@ -127,3 +131,20 @@ class Sight:
                 hidden = ti.select((beyond + across) * across < 0.0, deep * deep * (3.0 - 2.0 * deep), p.zeros())
                 share *= its * hidden + (1.0 - its) * (1.0 - hidden)
         return share
+
+    @ti.func
+    def off_ends(self, b, part: ti.template()):
+        """1 for the particles of a block that are farther than FAR from all free ends of plates, else 0."""
+        p = self.particles
+        w, off = b // p.stride, p.ones()
+        far = ti.cast(FAR * self.lengths[REACH], p.real)
+        for q in ti.static(range(len(self.plates))):
+            first = ti.static(OF_LINE * part)
+            for n in ti.static(range(2)):
+                if self.line[w, q, first + IN_LOW + n] == 0.0:
+                    way = self.line[w, q, first + LOW + n]
+                    y = self.line[w, q, first + LINE_Y] + way * self.line[w, q, first + ALONG_Y]
+                    z = self.line[w, q, first + LINE_Z] + way * self.line[w, q, first + ALONG_Z]
+                    apart = [p.offset(b, ti.cast(y, p.where), 0), p.offset(b, ti.cast(z, p.where), 1)]
+                    off = ti.select(dot(apart, apart) > far * far, off, p.zeros())
+        return off

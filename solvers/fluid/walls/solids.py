@@ -6,7 +6,7 @@ import numpy as np
 
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR, UNUSED
-from solvers.fluid.walls.layers import deep, faces, firm, layers, straight
+from solvers.fluid.walls.layers import deep, faces, firm, layers, sharp, straight
 from solvers.tank.parts import Part
 
 STRIP = 4.0  # spacings: height of the strips by which the dummies of a body are cut into blocks
@@ -53,10 +53,10 @@ class Solids:
 
     `places` (blocks, lanes, 2) m as drawn, `volumes` (blocks, lanes) m², `firm` (blocks, lanes) m, the distances within
     which they push water back, `along` (blocks, lanes, 2) unit vectors along the faces before them, `straight` those
-    away from corners and ends (see `layers.straight`), `deep` (blocks, lanes) m how far they are off the faces,
-    `numbers` (blocks, lanes), UNUSED in lanes without a dummy, of which the first lane is none; `owner` (blocks,) is
-    the part, `radius` (blocks,) m how far a block's dummies are from its first one. `sides` are those of each part, see
-    `sides_of`.
+    away from corners and ends (see `layers.straight`), `sliding` those away from bodies' sharp corners, `deep` (blocks,
+    lanes) m how far they are off the faces, `numbers` (blocks, lanes), UNUSED in lanes without a dummy, of which the
+    first lane is none; `owner` (blocks,) is the part, `radius` (blocks,) m how far a block's dummies are from its first
+    one. `sides` are those of each part, see `sides_of`.
     """
 
     def __init__(self, parts: Sequence[Part], water: Water, lanes: int):
@@ -69,8 +69,9 @@ class Solids:
         self.places = np.concatenate([*places, np.zeros((0, lanes, 2))])
         self.volumes = np.concatenate([*(volume for _, volume, *_ in found), np.zeros((0, lanes))])
         self.firm = np.concatenate([*(held for _, _, held, *_ in found), np.zeros((0, lanes))])
-        self.along = np.concatenate([*(along for *_, along, _, _ in found), np.zeros((0, lanes, 2))])
-        self.straight = np.concatenate([*(away for *_, away, _ in found), np.zeros((0, lanes, 2))])
+        self.along = np.concatenate([*(along for *_, along, _, _, _ in found), np.zeros((0, lanes, 2))])
+        self.straight = np.concatenate([*(away for *_, away, _, _ in found), np.zeros((0, lanes, 2))])
+        self.sliding = np.concatenate([*(slides for *_, slides, _ in found), np.zeros((0, lanes, 2))])
         self.deep = np.concatenate([*(off for *_, off in found), np.zeros((0, lanes))])
         self.owner = np.repeat(np.arange(len(parts)), np.diff(self.ends))
         used = self.volumes > 0.0
@@ -80,21 +81,22 @@ class Solids:
 
     @staticmethod
     def _part(part: Part, water: Water, rows: int, lanes: int) -> tuple[np.ndarray, ...]:
-        """Places, volumes, `firm`, `along`, `straight` and `deep` of one part's dummies, in blocks of lanes."""
+        """Of one part's dummies, in blocks of lanes, what `Solids` has from `places` to `deep`."""
         spacing = water.spacing
         if is_solid(part):
             corners = counter_clockwise(part.points)
             points, volumes, depths = layers(corners[::-1], spacing, rows)
             along = faces(points, corners)
+            slides = straight(points, along, sharp(corners[::-1]), water.reach)
         else:
             points, volumes, depths = sheet(part.points, spacing, rows)
             way = np.subtract(part.points[1], part.points[0])
-            along = np.tile(way / np.hypot(*way), (len(points), 1))
+            along = slides = np.tile(way / np.hypot(*way), (len(points), 1))
         strip = np.floor((points[:, 1] - points[:, 1].min()) / (STRIP * spacing))
         order = np.lexsort((points[:, 0], strip))
         more = -len(points) % lanes
         drawn = np.asarray(part.points, dtype=float)
         away, off = straight(points, along, drawn, water.reach), deep(points, along, drawn)
-        columns = (points, FAR), *((one, 0.0) for one in (volumes, firm(depths, spacing), along, away, off))
+        columns = (points, FAR), *((one, 0.0) for one in (volumes, firm(depths, spacing), along, away, slides, off))
         filled = (np.concatenate([one[order], np.full((more, *one.shape[1:]), fill)]) for one, fill in columns)
         return tuple(one.reshape(-1, lanes, *one.shape[1:]) for one in filled)

@@ -1,9 +1,10 @@
-"""The prismatic tank: how runs are compared with the finest, and when water is at the roof."""
+"""The prismatic tank: how runs are compared with the finest, what gauges show, and when water is at the roof."""
 
 import numpy as np
 import pytest
 
 from lab.measures.value import Value
+from lab.preset.find import load
 from lab.studies.reproduce import experiments
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.water import prismatic
@@ -14,8 +15,22 @@ def swayed(spacing: float, extra: float, highest: float = 100.0, preset: str = "
     """A run whose pressure at P1 is 300 Pa and a sine of 200 Pa of the motion's frequency, and `extra` (Pa) of it."""
     time = np.arange(0.0, 20.0, 1e-3)
     pressure = 300.0 + (200.0 + extra) * np.sin(2.0 * np.pi * 1.08 * time)
-    one = ran(preset, {"water.spacing": f"{spacing} mm"}, time=time, gauge_pressure=pressure[:, None, None])
+    dry = np.zeros_like(time)
+    shown = np.stack([pressure, dry, dry], axis=-1)[:, None]
+    one = ran(preset, {"water.spacing": f"{spacing} mm"}, time=time, gauge_pressure=shown)
     one.measures["highest_water"] = Value(highest, "mm")
+    return [one]
+
+
+def hit(preset: str, frequency: float, steady: float, hits: list[float], changes: dict | None = None):
+    """A run with a steady pressure (Pa) at P1, hits (Pa) of 40 ms at P2, one in each of the last cycles, none at P3."""
+    time = np.arange(0.0, 20.0, 1e-3)
+    struck = np.zeros_like(time)
+    for back, high in enumerate(reversed(hits)):
+        struck[np.abs(time - (time[-1] - (back + 0.5) / frequency)) < 0.02] = high
+    shown = np.stack([np.full_like(time, steady), struck, np.zeros_like(time)], axis=-1)[:, None]
+    one = ran(preset, {"water.spacing": "3.5 mm", **(changes or {})}, time=time, gauge_pressure=shown)
+    one.measures["highest_water"] = Value(100.0, "mm")
     return [one]
 
 
@@ -33,6 +48,62 @@ def test_a_finer_run_that_is_farther_off_differs():
     assert [row.verdict for row in prismatic.convergence(found).rows] == [Verdict.DIFFERS]
 
 
+def test_peaks_are_less_the_pressure_at_rest_at_each_gauge():
+    """Half full, P1 is 52.5 mm below the surface and bears 515 Pa at rest; P2 and P3 are above it."""
+    half = hit("sloshing/source-p-50-roll", 1.34, 1015.0, [200.0, 400.0] * 4 + [300.0])
+    first, second, third = (prismatic.peak_at(half, given) for given in (1, 2, 3))
+    assert first.value == pytest.approx(1015.0 - 1000.0 * 9.81 * 0.0525) and first.uncertainty == pytest.approx(0.0)
+    assert second.value == pytest.approx(300.0) and second.note == ""
+    assert second.uncertainty == pytest.approx(100.0 / 3.0)  # √(8 · 100² / 8) / √9
+    assert third.value is None and third.note == "dry"
+    quarter = hit("sloshing/source-p-25-roll", 1.04, 1015.0, [])
+    assert prismatic.peak_at(quarter, 1).value == pytest.approx(1015.0)  # the still level is at P1's middle
+
+
+def test_a_gauge_is_dry_below_the_weight_of_one_layer_of_particles():
+    """Particles of 3.5 mm weigh 34 Pa a layer; cycles without a hit count as nothing in the mean of nine."""
+    of = "sloshing/source-p-50"
+    assert prismatic.peak_at(hit(of, 1.34, 600.0, [33.0] * 9), 2).note == "dry"
+    some = prismatic.peak_at(hit(of, 1.34, 600.0, [90.0, *[0.0] * 7, 90.0]), 2)
+    assert some.value == pytest.approx(20.0) and some.note == ", wet in 2 of 9"
+
+
+def test_pages_tell_peaks_in_the_upper_chamber():
+    told = experiments("water")["prismatic-half"].tell(
+        {"50 %, roll": hit("sloshing/source-p-50-roll", 1.34, 1015.0, [90.0] * 9)}
+    )
+    cells = dict(zip(*told.table, strict=True))
+    assert [cells[f"mean peak at P{gauge}"] for gauge in (2, 3)] == ["90 ± 0 Pa", "dry"]
+    assert cells["mean peak at P1, less at rest"] == "500 ± 0 Pa"
+
+
+def test_chamfers_are_told_beside_those_of_50_mm():
+    """A greater chamfer lowers the first natural frequency (finite elements): 1.440, 1.435, 1.427 Hz."""
+    known = experiments("water")["prismatic-chamfer-half"].batches(False)
+    found, hits = {}, {"40 mm": 90.0, "50 mm": 190.0, "60 mm": 0.0}
+    for size, high in hits.items():
+        batch = known[label := f"50 %, roll, {size}"]
+        found[label] = hit(batch.preset, 1.34, 1015.0, [high] * 9, dict(batch.changes))
+    told = experiments("water")["prismatic-chamfer-half"].tell(found)
+    assert [row.ours for row in told.rows] == [
+        "+0 ± 0 Pa (s.e.); -100 ± 0 Pa (s.e.); dry",
+        "+0 ± 0 Pa (s.e.); dry for 190 Pa; dry",
+    ]
+    assert told.figure is not None
+    assert [row[5] for row in told.table[1:]] == ["1.440 Hz", "1.435 Hz", "1.427 Hz"]
+
+
+def test_gauges_lie_on_the_walls_of_tanks_with_other_chamfers():
+    known = experiments("water")
+    both = known["prismatic-chamfer"].batches(False) | known["prismatic-chamfer-half"].batches(False)
+    for label, batch in both.items():
+        size = float(label.rsplit(", ", 1)[1].split()[0]) / 1e3
+        preset = load(batch.preset, batch.changes).resolved
+        at = preset.gauges["P3"].place
+        assert at == pytest.approx((-0.15 + size / 2, 0.21 - size / 2))  # the middle of the upper chamfer
+        assert preset.gauges["P1"].place[1] == pytest.approx(0.0525)
+
+
 @pytest.mark.parametrize(("highest", "verdict"), [(207.0, Verdict.AGREES), (208.0, Verdict.DIFFERS)])
 def test_water_within_a_spacing_of_the_roof_touches_it(highest, verdict):
     found = {"25 %, roll": swayed(2.4, 0.0, highest, "sloshing/source-p-25-roll")}
@@ -43,5 +114,6 @@ def test_water_within_a_spacing_of_the_roof_touches_it(highest, verdict):
 
 def test_all_runs_of_the_study_are_of_presets_that_exist():
     names = {name: one.batches(False) for name, one in experiments("water").items()}
-    counted = {one: len(names[f"prismatic-{one}"]) for one in ("sway", "sound", "fine", "cost", "roof", "half")}
-    assert counted == {"sway": 3, "sound": 4, "fine": 4, "cost": 3, "roof": 2, "half": 2}
+    asked = "sway", "sound", "fine", "cost", "roof", "half", "chamfer", "chamfer-half"
+    counted = {one: len(names[f"prismatic-{one}"]) for one in asked}
+    assert [*counted.values()] == [3, 4, 4, 3, 2, 2, 2, 6]

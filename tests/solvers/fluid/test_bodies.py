@@ -131,6 +131,25 @@ def test_a_plate_is_as_tight_as_a_wall():
     np.testing.assert_allclose(runs[0].observe()["part_force"][0, 0, 0], wanted, rtol=0.03)
 
 
+AFLOAT = Body(((0.0, 0.08), (0.0, 0.2)))
+RIDGE = np.array([(-0.3, 0.0), (-0.1, 0.0), (0.0, 0.14), (0.1, 0.0), (0.3, 0.0), (0.3, 0.6), (-0.3, 0.6)])
+
+
+@pytest.mark.parametrize(
+    ("given", "seconds", "most"),
+    [({"parts": (AFLOAT,)}, 8.0, 3e-3), ({"outline": RIDGE}, 10.0, 15e-3)],
+)
+@pytest.mark.slow
+def test_water_that_starts_as_a_lattice_round_free_ends_comes_to_rest(given, seconds, most):
+    """R.m.s. speed (m/s): packed water in a box without plates has 1.7 mm/s after 4 s."""
+    solid = given.get("parts") or (Body(RIDGE[1:4].tolist(), closed=True),)
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
+    drops = drops[:, clear_of(drops[0, :, :2], solid, SPACING)]
+    run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, drops=drops, alpha=0.02, **given), threads=1, arch="cpu")
+    run.advance(round(seconds / run.dt))
+    assert np.sqrt((run.snapshot()["water_velocity"][0] ** 2).sum(axis=1).mean()) < most
+
+
 @pytest.mark.slow
 def test_a_swaying_cylinder_has_the_added_mass_of_potential_theory():
     """In a full round tank: ρ π a² (b² + a²)/(b² − a²) (Lamb 1932, art. 68), to 8 % with 16 spacings across."""

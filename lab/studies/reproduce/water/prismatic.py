@@ -2,16 +2,19 @@
 
 Trimulyono, Hashimoto & Matsuda (2019), J. Mar. Sci. Eng. 7, 247. The source gives its pressures in figures only, so
 runs are compared with the finest of ours: by the root mean square difference of the pressure at P1 over nine cycles,
-which counts hits and where they come, and by the mean peak of these cycles, of means over AVERAGE.
+which counts hits and where they come, and by the mean peak of these cycles, of means over AVERAGE. Mean peaks at P1 to
+P3 are less the hydrostatic pressure at rest, as the source's are (its section 3).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.preset.sections.water.liquid import spacing
+from lab.measures.gauges import pressure_gauges
+from lab.measures.value import Value, over_worlds
+from lab.preset.sections.water.liquid import depth, spacing
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Found, Row, Told, observed
@@ -22,6 +25,9 @@ from lab.studies.reproduce.water.costs import COSTS, cost
 CYCLES = 9  # the last of a run, as in the source
 AVERAGE = 0.010  # s
 ROOF = 210.0  # mm
+UPPER = ("P2", "P3")  # gauges of the upper chamber
+PEAK = "{:.0f} ± {error:.0f} Pa{note}"
+DRY = "dry"
 THIRTY, HOURS = 30.0, 9.0  # s of motion, and h that they took the source with one phase in the plane
 FALLS = "it falls with the spacing, as the source's does from 119 to 57 Pa"
 RISES = "it falls as sound gets faster: of four speeds the highest is best"
@@ -30,7 +36,7 @@ COLOURS = (*(GREY,) * 3, GREEN, VERMILION, BLUE)
 
 @dataclass(frozen=True)
 class Pressure:
-    """The pressure (T,) Pa at P1 over the last CYCLES cycles, at times (T,) s."""
+    """The pressure (T,) Pa at a gauge over the last CYCLES cycles, at times (T,) s."""
 
     time: np.ndarray
     value: np.ndarray
@@ -42,22 +48,65 @@ class Pressure:
         return np.convolve(self.value, np.full(samples, 1.0 / samples), "same")
 
     @property
+    def peaks(self) -> np.ndarray:
+        """The highest running mean (CYCLES,) Pa of each cycle."""
+        return np.array([part.max() for part in np.array_split(self.means, CYCLES)])
+
+    @property
     def mean_peak(self) -> float:
-        """Mean of the highest running mean (Pa) of each cycle."""
-        return float(np.mean([part.max() for part in np.array_split(self.means, CYCLES)]))
+        """Mean of the peaks (Pa)."""
+        return float(self.peaks.mean())
+
+    @property
+    def error(self) -> float:
+        """Standard error (Pa) of the mean peak, from the scatter of the cycles, taken as independent."""
+        return float(self.peaks.std(ddof=1)) / CYCLES**0.5
+
+    def wet(self, least: float) -> int:
+        """In how many cycles the pressure comes to `least` (Pa) or more."""
+        return sum(part.max() >= least for part in np.array_split(self.value, CYCLES))
 
     def off(self, other: "Pressure") -> float:
         """Root mean square difference (Pa) from another, of running means."""
         return float(np.sqrt(np.mean((self.means - np.interp(self.time, other.time, other.means)) ** 2)))
 
 
-def pressure(one: Outcome) -> Pressure:
-    """The pressure at the first gauge over the last cycles of the run's motion."""
+def pressure(one: Outcome, gauge: str = "P1") -> Pressure:
+    """The pressure at a gauge over the last cycles of the run's motion."""
     series, motion = one.recording.series, one.recording.preset.motion
     driven = motion.sway or motion.roll
-    time = series["time"]
+    time, column = series["time"], pressure_gauges(one.recording).index(gauge)
     last = time >= time[-1] - CYCLES / driven.frequency
-    return Pressure(time[last], series["gauge_pressure"][last, 0, 0])
+    return Pressure(time[last], series["gauge_pressure"][last, 0, column])
+
+
+def at_rest(one: Outcome, gauge: str) -> float:
+    """The hydrostatic pressure (Pa) at the middle of a gauge: ρ g times its depth at rest, none above the surface."""
+    preset = one.recording.preset
+    below = depth(preset) - preset.gauges[gauge].place[1]
+    return preset.water.density * preset.run.gravity * max(0.0, below)
+
+
+def peak_at(outcomes: Sequence[Outcome], given: float) -> Value:
+    """The mean peak (Pa) at P1, P2 or P3 less the pressure at rest, with its error; none where no water comes.
+
+    A gauge is dry in a cycle in which it never shows the weight of one layer of particles, ρ g Δx: a gauge in air shows
+    the air's pressure, which is a few Pa.
+    """
+    one, gauge = outcomes[0], f"P{given:.0f}"
+    found, preset = pressure(one, gauge), one.recording.preset
+    wet = found.wet(preset.water.density * preset.run.gravity * spacing(preset))
+    if not wet:
+        return over_worlds([np.nan], "Pa", missing=DRY)
+    note = "" if wet == CYCLES else f", wet in {wet} of {CYCLES}"
+    less = found.mean_peak - at_rest(one, gauge)
+    return over_worlds([less], "Pa", uncertainties=[found.error], kind="cycles", note=note)
+
+
+def told_peak(one: Outcome, gauge: str) -> str:
+    """The mean peak at a gauge in words."""
+    value = peak_at([one], float(gauge[1:]))
+    return DRY if value.value is None else PEAK.format(value.value, error=value.uncertainty, note=value.note)
 
 
 def convergence(found: Found) -> Told:
@@ -70,8 +119,12 @@ def convergence(found: Found) -> Told:
     for label, one in runs.items():
         own = pressures[label]
         off = "" if label == finest else f"{own.off(pressures[finest]):.0f} Pa"
-        cells.append([*cost(label, one), f"{own.value.mean():.0f} Pa", f"{own.mean_peak:.0f} Pa", off, roof(one)])
-    heads = [*COSTS, "mean at P1", f"mean peak of {CYCLES} cycles", f"off {finest}", "highest water"]
+        upper = [told_peak(one, gauge) for gauge in UPPER]
+        cells.append(
+            [*cost(label, one), f"{own.value.mean():.0f} Pa", f"{own.mean_peak:.0f} Pa", off, *upper, roof(one)]
+        )
+    heads = [*COSTS, "mean at P1", f"mean peak of {CYCLES} cycles", f"off {finest}"]
+    heads += [*(f"mean peak at {gauge}" for gauge in UPPER), "highest water"]
     return Told(_falls(runs, pressures, finest), _figure(pressures), [heads, *cells])
 
 

@@ -37,8 +37,7 @@ def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
     """A patch of so many particles across, without walls and gravity."""
     water = Water(SIDE / count, SOUND, alpha=0.01, walls=False, shifting=shifting, speed=RATE * SIDE / np.sqrt(2.0))
     place = grid(SIDE, SIDE, water.spacing) - 0.5 * SIDE
-    under = -1000.0 * RATE**2 * torsion(0.5 * SIDE * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]), place)
-    drops = filled(place, water, lambda r: stirred(r, 0.0, RATE), lambda _: under)
+    drops = filled(place, water, lambda r: stirred(r, 0.0, RATE), pressure)
     corner = [np.argmax(place @ [a, b]) for a in (-1, 1) for b in (-1, 1)]
     start = np.hypot(*place[corner].T)
     places, turning, holes, distances, pressures = [], [], [], [], []
@@ -58,6 +57,11 @@ def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
     corners = np.hypot(*place[corner].T) / flown
     followed = np.array(pressures)[np.isin(TIMES, FOLLOWED)]
     return Patch(places, np.array(turning) / turning[0], corners, max(holes), min(distances), followed)
+
+
+def pressure(place: np.ndarray) -> np.ndarray:
+    """Pressure (n,) Pa at places (n, 2) m in the patch as it begins to turn, see `solvers.fluid.start.flow`."""
+    return -1000.0 * RATE**2 * torsion(0.5 * SIDE * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]), place)
 
 
 def in_middle(place: np.ndarray, pressed: np.ndarray) -> float:
