@@ -63,11 +63,11 @@ class Run(Strict):
 
 
 class Shown(Strict):
-    """The run that is pictured, at a share of its duration, and the point of its grid."""
+    """The run that is pictured, at a share of its duration, and the point of its grid: its number, or a value there."""
 
     run: str
     at: float
-    point: int = -1
+    point: int | str = -1
 
 
 class Stated(Strict):
@@ -167,6 +167,7 @@ def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], sou
     asked = [one for claim in claims for one in ([claim.runs] if isinstance(claim.runs, str) else claim.runs)]
     names = {
         "run": ([*asked, stated.shown.run], {*runs, ALL, LAST}),
+        "point": ([stated.shown.point] if isinstance(stated.shown.point, str) else [], _points(runs)),
         "setting": ([run.like for run in runs.values()], source.settings),
         "tolerance": ([claim.within for claim in claims], source.tolerance),
         "function of rows": ([claim.by for claim in claims], registry.ROWS),
@@ -176,6 +177,13 @@ def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], sou
     for kind, (used, known) in names.items():
         if missing := {*filter(None, used)} - {*known}:
             raise ValueError(f"{stated.name}: there is no {kind} {', '.join(sorted(missing))}")
+
+
+def _points(runs: Mapping[str, Run]) -> set[str]:
+    """The values of grids that full and quick runs have in common."""
+    grids = [(one.axes, one.axes if one.quick_axes is None else one.quick_axes) for one in runs.values()]
+    pairs = [(full[axis], quick[axis]) for full, quick in grids for axis in full if axis in quick]
+    return {value for full, quick in pairs for value in {*map(str, full)} & {*map(str, quick)}}
 
 
 def spread(raw: Mapping[str, object]) -> Iterator[dict]:

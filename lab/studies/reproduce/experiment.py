@@ -43,9 +43,10 @@ class Experiment:
     """`states` says in words what the source (its `section`) reports; `batches(quick)` what is run, by name.
 
     `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
-    leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time;
-    `why` explains how to read the rows, and why they differ from the source where they do; `question` says what is not
-    known of that; `needs` names the measured series without which it cannot be run (`lab.base.data`).
+    leave out; `shown` is the batch of which a `point`, by its number, mostly the last, or by a value of the grid, is
+    pictured, at this fraction of its time; `why` explains how to read the rows, and why they differ from the source
+    where they do; `question` says what is not known of that; `needs` names the measured series without which it cannot
+    be run (`lab.base.data`).
     """
 
     name: str
@@ -59,7 +60,7 @@ class Experiment:
     why: str = ""
     question: str = ""
     needs: str = ""
-    point: int = -1
+    point: int | str = -1
 
 
 @dataclass(frozen=True)

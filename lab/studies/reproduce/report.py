@@ -138,7 +138,10 @@ def _picture(path: Path, experiment: Experiment, found: Mapping[str, list[Outcom
     from lab.paint.video import poster  # slow to load
 
     batch, fraction = experiment.shown
-    folder = found[batch][experiment.point].folder
+    point, outcomes = experiment.point, found[batch]
+    if isinstance(point, str):
+        point = next(k for k, one in enumerate(outcomes) if point in map(str, one.setting.values()))
+    folder = outcomes[point].folder
     try:
         poster(folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0)
     except LabError:

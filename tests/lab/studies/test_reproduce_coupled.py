@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lab.preset.find import load
+from lab.studies.reproduce.ships.breaking import has_air_below
 from lab.studies.reproduce.ships.coupled import limit_and_order
 from lab.studies.reproduce.ships.tuning import Swing, closed_form, tuned
 
@@ -39,3 +40,12 @@ def test_closed_forms_of_the_tanks():
     """√(2 g/37.2 m) of the U-tube; 0.777 rad/s of the first wave in 13.7 m of water 1.2 m deep."""
     assert closed_form(load("ship/u-tube").resolved) == pytest.approx(0.726, abs=1e-3)
     assert closed_form(load("ship/anti-roll-tank").resolved) == pytest.approx(0.777, abs=1e-3)
+
+
+def test_water_over_air_is_seen():
+    """Of a pool and a drop: 2.5 spacings above the surface it is over air, 1.5 above it is not."""
+    y, z = np.meshgrid(np.arange(8) + 0.5, np.arange(3) + 0.5)
+    pool = np.stack([y.ravel(), z.ravel()], axis=1)
+    assert not has_air_below(0.1 * pool, 0.1)
+    assert not has_air_below(0.1 * np.concatenate([pool, [[3.0, 4.0]]]), 0.1)
+    assert has_air_below(0.1 * np.concatenate([pool, [[3.0, 5.0]]]), 0.1)

@@ -147,7 +147,7 @@ NUMBERS = {
 def figure(found: Found) -> Figure:
     """Roll for each metre of wave against frequency: runs in packets, and linear theory, dashed."""
     drawn, axes = canvas(SIZE)
-    for colour, (label, outcomes) in zip((BLUE, GREEN, VERMILION, GREY), found.items(), strict=False):
+    for colour, (label, outcomes) in zip((BLUE, GREEN, VERMILION, GREY, "k"), found.items(), strict=False):
         one = outcomes[0]
         if one.recording.preset.waves.kind == "packet":
             axes.plot(*response(one), color=colour, lw=1.3, label=label)
