@@ -73,8 +73,8 @@ def test_pages_tell_peaks_in_the_upper_chamber():
         {"50 %, roll": hit("sloshing/source-p-50-roll", 1.34, 1015.0, [90.0] * 9)}
     )
     cells = dict(zip(*told.table, strict=True))
-    assert [cells[f"mean peak at P{gauge}"] for gauge in (2, 3)] == ["90 ± 0 Pa", "dry"]
-    assert cells["mean peak at P1, less at rest"] == "500 ± 0 Pa"
+    assert [cells[f"mean peak at P{gauge}"] for gauge in (2, 3)] == ["90 ± 0 Pa (s.e.)", "dry"]
+    assert cells["mean peak at P1, less at rest"] == "500 ± 0 Pa (s.e.)"
 
 
 def test_chamfers_are_told_beside_those_of_50_mm():

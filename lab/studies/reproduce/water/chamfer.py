@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from lab.measures.value import Value
 from lab.preset.sections.water.liquid import depth
+from lab.report.numbers import with_error
 from lab.report.plots import BELOW, BLUE, GREEN, VERMILION, canvas
 from lab.studies.reproduce.experiment import Found, Row, observed
 from lab.studies.reproduce.figures import SIZE
@@ -78,7 +79,7 @@ def _change(one: Sequence[Outcome], usual: Sequence[Outcome], gauge: int) -> str
         return DRY
     if own.value is None or other.value is None:
         return f"{_words(own)} for {_words(other)}"
-    return f"{own.value - other.value:+.0f} ± {np.hypot(own.uncertainty, other.uncertainty):.0f} Pa (s.e.)"
+    return with_error(own.value - other.value, float(np.hypot(own.uncertainty, other.uncertainty)), "Pa", "+")
 
 
 def _words(value: Value) -> str:

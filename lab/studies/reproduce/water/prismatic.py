@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from lab.measures.gauges import pressure_gauges
 from lab.measures.value import Value, over_worlds
 from lab.preset.sections.water.liquid import depth, spacing
+from lab.report.numbers import with_error
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Found, Row, Told, observed
@@ -26,7 +27,6 @@ CYCLES = 9  # the last of a run, as in the source
 AVERAGE = 0.010  # s
 ROOF = 210.0  # mm
 UPPER = ("P2", "P3")  # gauges of the upper chamber
-PEAK = "{:.0f} ± {error:.0f} Pa{note}"
 DRY = "dry"
 THIRTY, HOURS = 30.0, 9.0  # s of motion, and h that they took the source with one phase in the plane
 FALLS = "it falls with the spacing, as the source's does from 119 to 57 Pa"
@@ -106,7 +106,7 @@ def peak_at(outcomes: Sequence[Outcome], given: float) -> Value:
 def told_peak(one: Outcome, gauge: str) -> str:
     """The mean peak at a gauge in words."""
     value = peak_at([one], float(gauge[1:]))
-    return DRY if value.value is None else PEAK.format(value.value, error=value.uncertainty, note=value.note)
+    return DRY if value.value is None else with_error(value.value, value.uncertainty, "Pa") + value.note
 
 
 def convergence(found: Found) -> Told:
