@@ -63,10 +63,10 @@ CHAMFERS = {
     "105 mm, chamfers of 50 mm": Pool(0.30, 0.105, (8, 12, 16), 0.05),
     "105 mm, chamfers of 40 mm": Pool(0.30, 0.105, (8, 12, 16), 0.04),
     "105 mm, chamfers of 60 mm": Pool(0.30, 0.105, (8, 12, 16), 0.06),
-    "105 mm, chamfers of 75 mm": Pool(0.30, 0.105, (8, 12, 16), 0.075),
-    "52.5 mm, chamfers of 45 mm": Pool(0.30, 0.0525, (6, 9, 12), 0.045),
-    "52.5 mm, chamfers of 30 mm": Pool(0.30, 0.0525, (6, 9, 12), 0.03),
-    "52.5 mm, chamfers of 50 mm": Pool(0.30, 0.0525, (6, 9, 12), 0.05),
+    "105 mm, chamfers of 75 mm": Pool(0.30, 0.105, (12, 16, 24), 0.075),
+    "52.5 mm, chamfers of 45 mm": Pool(0.30, 0.0525, (12, 16, 24), 0.045),
+    "52.5 mm, chamfers of 30 mm": Pool(0.30, 0.0525, (12, 16, 24), 0.03),
+    "52.5 mm, chamfers of 50 mm": Pool(0.30, 0.0525, (12, 16, 24), 0.05),
 }
 
 
