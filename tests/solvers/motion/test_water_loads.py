@@ -128,6 +128,7 @@ def at_sea(model: str, **changes) -> Scene:
     return scene if model == "sph" else replace(scene, step=1e-3)
 
 
+@pytest.mark.slow  # ten periods; what water and ship give each other is in `test_water_aboard.py`
 def test_what_the_waves_give_is_in_ship_and_water_or_lost():
     """Over ten periods the budget of sea, ship and particles closes to 1 % of the waves' work."""
     scene = at_sea("sph", alpha=0.05)
@@ -143,7 +144,6 @@ def test_what_the_waves_give_is_in_ship_and_water_or_lost():
     tank = np.array([[*row["pose"][0], *row["pose_rate"][0], 0.0, 0.0, 0.0] for row in rows])
     gained = float(np.diff(hull_energy(scene.vessels[0].ship, HOLD, tank))[0])
     of_water = 0.5 * sum(sign * (last[name] - first[name])[0] for name, sign in ACCOUNT.items())
-    print(waves, radiation, viscosity, gained, of_water)
     assert waves > 1.0
     assert abs(of_water) > 0.03 * waves
     assert waves - radiation - viscosity == pytest.approx(gained + of_water, abs=0.01 * waves)
