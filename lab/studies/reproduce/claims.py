@@ -74,7 +74,8 @@ class Stated(Strict):
     """An experiment of the source as a file tells it; `Experiment` says what its words are.
 
     `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `registry.FIGURES` by `by`,
-    with its arguments; `columns` are those of a table of runs of water; `tell` is one of `registry.TELLS`, which gives
+    with its arguments; `columns` are those of a table of runs of water, or the name of
+    columns that experiments share; `tell` is one of `registry.TELLS`, which gives
     rows, figure and table. `needs` is the measured series without which it cannot be run (`lab.base.data`).
     """
 
@@ -89,16 +90,17 @@ class Stated(Strict):
     runs: dict[str, Run] = {}
     runs_of: str = ""
     rows: list[dict] = []
-    columns: list[Column] = []
+    columns: list[Column] | str = []
     figure: dict[str, object] = {}
     tell: str = ""
     needs: str = ""
 
 
 class Source(Strict):
-    """A file of claims: what runs share, the tolerances by name, the experiments."""
+    """A file of claims: what runs share, the columns and tolerances by name, the experiments."""
 
     settings: dict[str, Settings] = {}
+    columns: dict[str, list[Column]] = {}
     tolerance: dict[str, Tolerance] = {}
     experiment: list[Stated] = Field(min_length=1)
 
@@ -139,6 +141,7 @@ def read(text: str) -> dict[str, Experiment]:
 def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Experiment:
     claims = [Claim.model_validate(one) for raw in stated.rows for one in spread(raw)]
     _check(stated, claims, runs, source)
+    columns = source.columns[stated.columns] if isinstance(stated.columns, str) else stated.columns
 
     def batches(quick: bool) -> dict[str, Batch]:
         other = "full" if quick else "quick"
@@ -153,7 +156,7 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
             return registry.TELLS[stated.tell](found)
         draw = {key: value for key, value in stated.figure.items() if key != "by"}
         figure = registry.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
-        further = table(stated.columns, found) if stated.columns else ()
+        further = table(columns, found) if columns else ()
         return Told(rows(claims, found, source.tolerance), figure, further)
 
     told = "name", "title", "section", "states", "lost", "why", "question", "needs"
@@ -169,6 +172,7 @@ def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], sou
         "run": ([*asked, stated.shown.run], {*runs, ALL, LAST}),
         "point": ([stated.shown.point] if isinstance(stated.shown.point, str) else [], _points(runs)),
         "setting": ([run.like for run in runs.values()], source.settings),
+        "set of columns": ([stated.columns] if isinstance(stated.columns, str) else [], source.columns),
         "tolerance": ([claim.within for claim in claims], source.tolerance),
         "function of rows": ([claim.by for claim in claims], registry.ROWS),
         "figure": ([stated.figure.get("by", "")], registry.FIGURES),
