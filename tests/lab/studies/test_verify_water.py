@@ -5,10 +5,10 @@ import pytest
 
 from lab.studies.verify.water import (
     CASES,
-    air,
     balance,
     bubbles,
     drops,
+    interface,
     orifice,
     patch,
     rest,
@@ -190,16 +190,18 @@ def test_water_that_starts_packed_sloshes_as_water_and_a_lattice_faster(monkeypa
 def test_references_of_water_and_air():
     """Without air the wave's rate is that of water alone; under its own density there is none. A circle is round."""
     alone = np.sqrt(9.81 * np.pi * np.tanh(np.pi))
-    assert air.Between(1e-9).rate == pytest.approx(alone, rel=1e-9)
-    assert air.Between(1.2).rate == pytest.approx(alone * np.sqrt(998.8 / 1001.2), rel=1e-9)
+    assert interface.Between(1e-9).rate == pytest.approx(alone, rel=1e-9)
+    assert interface.Between(1.2).rate == pytest.approx(alone * np.sqrt(998.8 / 1001.2), rel=1e-9)
     assert waves.between(1000.0, 1e-9, waves.VISCOSITY) == pytest.approx(waves.viscous(), rel=1e-6)
-    thin, rate = 1e-3 * waves.VISCOSITY, air.Between(500.0).rate
+    thin, rate = 1e-3 * waves.VISCOSITY, interface.Between(500.0).rate
     layers = 2.0 * 0.5 / 1.5**2 * np.pi * np.sqrt(0.5 * rate * thin)
     assert waves.between(1000.0, 500.0, thin) == pytest.approx(-layers + 1j * (rate - layers), rel=1e-4)
+    assert interface.Between(1.2).unsure(0.025) == pytest.approx(np.exp(0.025 * np.pi) - 1.0, rel=0.01)
+    assert interface.Between(500.0).unsure(0.025) > 2.0 * interface.Between(1.2).unsure(0.025)  # layers are thin
     place = np.array([[0.1, 0.3], [-0.2, 1.5]])
-    below, above = (air.mode(np.array([[0.2, 1.0 + off]]))[0, 1] for off in (-1e-9, 1e-9))
+    below, above = (interface.mode(np.array([[0.2, 1.0 + off]]))[0, 1] for off in (-1e-9, 1e-9))
     assert below == pytest.approx(above)  # neither parts from the other
-    assert (air.mode(place)[:, 0] * [1.0, -1.0] > 0.0).all()
+    assert (interface.mode(place)[:, 0] * [1.0, -1.0] > 0.0).all()
     corners = bubbles.circle(0.25, (0.0, 0.5))
     y, z = corners.T
     assert 0.5 * abs(y @ np.roll(z, -1) - z @ np.roll(y, -1)) == pytest.approx(np.pi * 0.25**2, rel=1e-12)

@@ -1,51 +1,35 @@
 """Water and air: a still tank, the wave between them, air in a closed column, and what pairs of both must keep."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import quad
 
 from lab.studies.case import Case, Found, Line
+from lab.studies.verify.water.interface import waves
 from lab.studies.verify.water.scenes import (
     G,
-    Swing,
+    bearing,
     box,
     grid,
     kept,
     looks,
-    order_line,
+    of_both,
     scene,
     set_going,
     simulated,
-    swing,
 )
-from lab.studies.verify.water.waves import between
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
-from solvers.fluid.phases.adiabatic import GAMMA, background
-from solvers.fluid.start.air import air_above, with_air
-from solvers.fluid.start.rest import at_rest
+from solvers.fluid.phases.adiabatic import GAMMA
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
 SECTION = "Water and air"
 WIDTH, DEPTH, HEIGHT = 0.3, 0.15, 0.3  # m, of the still tank
 REST, ROWS = 20.0, (8, 16)  # s, layers
-K = np.pi  # 1/m, of the wave in a box of 1 m, half filled with 1 m of water
-WAVED, STEEP, VISCOSITY = (20, 40), 0.03, np.sqrt(G) / 500.0  # layers; k times the largest rise; m²/s
-PERIODS, A_PERIOD = 5.0, 20
 COLUMN, PRESSED, POOL = 0.15, 0.03, 0.05  # m: length of each cushion of air, how much of it is taken, the water between
 CUSHIONS = (8, 16, 32)  # particles over its length
 REAL = 343.0  # m/s
-
-
-def of_both(water: Water, outline: np.ndarray, depth: float) -> Scene:
-    """A closed tank with a depth (m) of water and air over it, at rest."""
-    return scene(water, with_air(at_rest(outline, depth, water, G), air_above(outline, depth, water, G))[None], outline)
-
-
-def bearing(water: Water, over: float = 0.0) -> Water:
-    """A water with the background pressure that presets have, under air of a height (m)."""
-    return replace(water, background=background(water.air, water, water.air.density * G * over))
 
 
 def rested(rows: int, duration: float) -> tuple[float, float, float]:
@@ -95,81 +79,6 @@ def still(fast: bool) -> Found:
         for count, (a, b, c) in zip(rows, found, strict=True)
     )
     return Found(lines, notes=[f"{duration:g} s; surface, pressure, air's speed at the end. {shown}."])
-
-
-@dataclass(frozen=True)
-class Between:
-    """The wave between water and a lighter fluid (kg/m³); `smoothing` is h/Δx: with 2 a heavy one makes it stiff."""
-
-    density: float
-    smoothing: float = 2.0
-
-    @property
-    def rate(self) -> float:
-        """ω (1/s): ω² = g k (ρ_w − ρ_a)/(ρ_w coth kd + ρ_a coth kd_a) (Lamb 1932, §231)."""
-        cotangent = 1.0 / np.tanh(K)
-        return float(np.sqrt(G * K * (1000.0 - self.density) / ((1000.0 + self.density) * cotangent)))
-
-    @property
-    def viscous(self) -> complex:
-        """Growth rate (1/s) with viscosity, see `between`."""
-        return between(1000.0, self.density, VISCOSITY)
-
-    def made(self, rows: int) -> Scene:
-        """The wave on a level surface, with so many layers of each fluid."""
-        spacing, sound = 1.0 / rows, 10.0 * np.sqrt(G)
-        alpha = 8.0 * VISCOSITY / (self.smoothing * spacing * sound)
-        speed = STEEP / K * self.rate  # of the water at the surface
-        air = Air(self.density, sound, alpha)
-        water = Water(spacing, sound, smoothing=self.smoothing, alpha=alpha, speed=speed, air=air)
-        made = of_both(bearing(water, 1.0), box(1.0, 2.0), 1.0)
-        set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
-        return made
-
-    def waved(self, rows: int) -> Swing:
-        """The oscillation of the mode's momentum, from a level surface, with so many layers of each fluid."""
-        times, found = np.arange(1, round(PERIODS * A_PERIOD)) * 2.0 * np.pi / (self.rate * A_PERIOD), []
-        with simulated(self.made(rows)) as run:
-            for time in looks(run, times):
-                place, velocity, mass = kept(run)
-                shape = mode(place)
-                found.append((time, (mass[:, None] * velocity * shape).sum() / (mass[:, None] * shape**2).sum()))
-        time, amplitude = np.array(found).T
-        later = time > 2.0 * np.pi / self.rate
-        return swing(time[later], amplitude[later], self.rate)
-
-
-def mode(place: np.ndarray) -> np.ndarray:
-    """Velocities (n, 2) of the first mode of two fluids 1 m deep each in a box 1 m wide."""
-    y, z = place.T
-    lower, upper = z <= 1.0, np.where(z <= 1.0, z, 2.0 - z)
-    along = np.where(lower, 1.0, -1.0) * np.cos(K * y) * np.cosh(K * upper)
-    return np.stack([along, np.sin(K * y) * np.sinh(K * upper)], axis=1) / np.sinh(K)
-
-
-def waves(fast: bool) -> Found:
-    """Waves of water under air, and under a fluid of half its density."""
-    rows, lines, notes = WAVED[:1] if fast else WAVED, [], []
-    for fluid in (Between(1.2), *(() if fast else (Between(500.0, 3.0),))):
-        swings = [fluid.waved(count) for count in rows]
-        exact = fluid.viscous
-        errors = [one.rate / exact.imag - 1.0 for one in swings]
-        name = f"rate under a fluid of {fluid.density:g} kg/m³"
-        why, allowed = "the surface is known to half a spacing; c0 = 10 √(g H)", 0.02 if fast else 0.01
-        if fluid.density > 100.0:
-            why, allowed = "layers of shear on both sides of the surface are two or three spacings thick", 0.02
-        source = "linear theory of two viscous fluids"
-        lines.append(Line(name, swings[-1].rate, exact.imag, source, allowed, why, "1/s"))
-        lines += order_line(name, [1.0 / count for count in rows], errors, 0.01)
-        decays = ", ".join(f"{-one.decay / exact.real:.2f}" for one in swings)
-        shown = ", ".join(f"{100 * error:+.2f} %" for error in errors)
-        slower = f"{100 * (exact.imag / fluid.rate - 1):+.2f} %"
-        lamb = f"{-exact.real / (2.0 * VISCOSITY * K**2):.2f}"
-        notes.append(
-            f"{fluid.density:g} kg/m³: with viscosity the rate is {slower} off ω² = g k (ρ_w − ρ_a)/(ρ_w coth kd + "
-            f"ρ_a coth kd_a), the decay {lamb} of 2 ν k². {rows} layers: rates {shown}, decay {decays} of that."
-        )
-    return Found(lines, notes=notes)
 
 
 @dataclass(frozen=True)

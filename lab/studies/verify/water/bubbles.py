@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.case import Case, Found, Line, Picture
-from lab.studies.verify.water.air import bearing
-from lab.studies.verify.water.scenes import box, looks, order_line, scene, simulated
+from lab.studies.verify.water.scenes import bearing, box, looks, order_line, scene, simulated
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
 from solvers.fluid.phases.adiabatic import Adiabatic
 from solvers.fluid.start.packing import packed

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -10,6 +10,8 @@ from scipy.optimize import least_squares
 from lab.preset.outline import rectangle
 from lab.studies.case import Line
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
+from solvers.fluid.phases.adiabatic import background
+from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -144,3 +146,13 @@ def errors_note(what: str, counts: Sequence[int], each: str, errors: Sequence[fl
         return []
     shown = ", ".join(f"{100.0 * error:.2f} %" for error in errors)
     return [f"{what}, with {', '.join(map(str, counts))} {each}: {shown}."]
+
+
+def of_both(water: Water, outline: np.ndarray, depth: float) -> Scene:
+    """A closed tank with a depth (m) of water and air over it, at rest."""
+    return scene(water, with_air(at_rest(outline, depth, water, G), air_above(outline, depth, water, G))[None], outline)
+
+
+def bearing(water: Water, over: float = 0.0) -> Water:
+    """A water with the background pressure that presets have, under air of a height (m)."""
+    return replace(water, background=background(water.air, water, water.air.density * G * over))
