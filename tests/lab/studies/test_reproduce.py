@@ -319,6 +319,11 @@ def test_a_claim_on_a_run_that_there_is_not_is_refused():
         read(CLAIMS.replace('["B", "A"]', '["C", "A"]'))
 
 
+def test_columns_that_no_set_has_are_refused():
+    with pytest.raises(ValueError, match="trial: there is no set of columns impacts"):
+        read(CLAIMS.replace('lost = "nothing"', 'lost = "nothing"\ncolumns = "impacts"'))
+
+
 @pytest.mark.parametrize("report_name", reports())
 def test_every_verdict_of_the_shipped_reports_has_its_tolerance(report_name):
     """And no number of one bed has a ±."""

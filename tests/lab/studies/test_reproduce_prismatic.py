@@ -117,3 +117,14 @@ def test_all_runs_of_the_study_are_of_presets_that_exist():
     asked = "sway", "sound", "fine", "cost", "roof", "half", "chamfer", "chamfer-half"
     counted = {one: len(names[f"prismatic-{one}"]) for one in asked}
     assert [*counted.values()] == [3, 4, 4, 3, 2, 2, 2, 6]
+
+
+@pytest.mark.parametrize(
+    ("preset", "hours"), [("sloshing/source-p-25-roll", 9.0), ("sloshing/source-p-25-roll-air", 81.0)]
+)
+def test_thirty_seconds_are_set_beside_the_sources_hours(preset, hours):
+    """A tenth of a second in 12 s is 30 s in an hour; the source has 9 h with water alone, 81 h with air."""
+    one = ran(preset, time=np.array([0.0, 0.1]))
+    one.cost["seconds"] = {"run": 12.0}
+    cells = dict(zip(*prismatic.thirty_seconds({"ours": [one]}).table, strict=True))
+    assert cells["30 s would take"] == "60 min" and cells[f"the source's {hours:g} h over that"] == f"{hours:.1f}"
