@@ -20,7 +20,7 @@ from solvers.fluid.phases.vent import Vent
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, Particles, Shares
 from solvers.fluid.walls.answer import answer_at_rest
-from solvers.fluid.walls.behind import OF_NONE, Behind
+from solvers.fluid.walls.behind import Behind
 from solvers.fluid.walls.bodies import Bodies
 from solvers.fluid.walls.closing import Closing
 from solvers.fluid.walls.edges import Edges
@@ -83,9 +83,7 @@ class WaterMatter(Matter):
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
-        owner = np.full(p.dry * lanes, OF_NONE)
-        owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
-        self.edges = Edges(arrays, medium, self.extrapolation, water.edges, owner, tank.thickness)
+        self.edges = Edges(arrays, medium, self.extrapolation, water.edges, behind, dummy, scene.tanks, pool.first)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
