@@ -7,7 +7,6 @@ import numpy as np
 from solvers.fluid.constants import FASTEST
 from solvers.fluid.state import allowed
 from solvers.machine.errors import BadState, Unavailable
-from solvers.tank.tank import Tank
 
 CREATED = 0.1  # of the energy exchanged: what may be missing from the account before a run is stopped
 LEAST = 1e-3  # Mach number of water that has so little energy that none can be missed
@@ -20,11 +19,10 @@ def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
     p = matter.particles
     found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
     velocity = matter.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
-    place, open_top = np.stack(found[0:2], axis=-1)[world], matter.water.walls and not matter.census.closed
+    place, speed = np.stack(found[0:2], axis=-1)[world], np.linalg.norm(velocity, axis=1)
     return {
         "place": place,
-        "spilled": outside(place, matter.scene.tanks, matter.water.reach) & open_top,
-        "speed": np.linalg.norm(velocity, axis=1),
+        "speed": np.where(outside(place, matter.order.grid.watched), 0.0, speed),
         **{name: values[world] for name, values in (("excess", found[6]), ("span", found[7]), ("gas", matter.gas))},
     }
 
@@ -32,8 +30,8 @@ def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
 def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, sound: float) -> None:
     """Raise BadState for a world whose particles made the watch stop it at `time` (s).
 
-    `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, "excess" (n,) of density, "span"
-    (n,), "gas" (n,), 1 for air, and "spilled" (n,), whether they are out of an open tank; `sound` is c0 in m/s.
+    `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, zero for those that have left an
+    open one, "excess" (n,) of density, "span" (n,), and "gas" (n,), 1 for air; `sound` is c0 in m/s.
     """
     remedy = REMEDY
     place, speed, excess = (particles[name] for name in ("place", "speed", "excess"))
@@ -44,14 +42,6 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
         what, at = "the state of a particle of water is not a number", place[worst]
     elif speed.max() >= FASTEST * sound:
         worst = speed.argmax()
-        if particles["spilled"][worst]:
-            share = 100.0 * particles["spilled"].mean()
-            raise BadState(
-                world,
-                f"{share:.2g} % of the water has left the open tank over its brim, and falls at "
-                f"{speed[worst]:.3g} m/s by t = {time:.4g} s; give the tank a lid or higher walls (tank.lid, "
-                "tank.height), or end the run before.",
-            )
         what, at = f"water moves at {speed[worst]:.3g} m/s, Mach {speed[worst] / sound:.2g},", place[worst]
     else:
         worst = (np.abs(excess) / allowed(particles["span"])).argmax()
@@ -75,16 +65,14 @@ def check_water(rows: dict[str, np.ndarray], start: np.ndarray | float, time: fl
         raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {REMEDY}.")
 
 
-def outside(place: np.ndarray, tanks: Sequence[Tank], near: float) -> np.ndarray:
-    """Which of the places (n, 2) m are farther than `near` (m) beside or below the boxes round all tanks.
+def outside(place: np.ndarray, box: tuple[np.ndarray, np.ndarray] | None) -> np.ndarray:
+    """Which of the places (n, 2) m are beyond the corners of a box, where how fast they are is not looked at.
 
-    What is above a tank may still fall back into it.
+    What comes back into it, from above the tank, is looked at again. None: nothing is beyond.
     """
-    out = np.ones(len(place), dtype=bool)
-    for tank in tanks:
-        (left, low), (right, _) = tank.outline.min(axis=0) - near, tank.outline.max(axis=0) + near
-        out &= (place[:, 0] < left) | (place[:, 0] > right) | (place[:, 1] < low)
-    return out
+    if box is None:
+        return np.zeros(len(place), dtype=bool)
+    return ((place < box[0]) | (place > box[1])).any(axis=1)
 
 
 def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarray:

@@ -20,7 +20,8 @@ class Grid:
 
     A block of particles at rest in a strip is about a square. Points outside the box belong to its outermost cells.
     Space may repeat itself along an axis with a period (m), from the `origin` on; 0: it does not. Tanks may overlap in
-    the plane, as they stand one behind the other in a ship: each of `layers` has strips of its own.
+    the plane, as they stand one behind the other in a ship: each of `layers` has strips of its own. Of tanks that are
+    open, `watched` are the corners of the box beyond which a particle has left and may fall as fast as it will.
     """
 
     lower: tuple[float, float]
@@ -30,6 +31,7 @@ class Grid:
     periods: tuple[float, float] = (0.0, 0.0)
     origin: tuple[float, float] = (0.0, 0.0)
     layers: int = 1
+    watched: tuple[np.ndarray, np.ndarray] | None = None
 
     @property
     def height(self) -> float:
@@ -113,5 +115,13 @@ def grid_round(
     outline = tanks[0].outline
     sides = zip(NAMES, np.ptp(outline, axis=0), strict=False)
     periods = tuple(float(side) if name in water.periodic else 0.0 for name, side in sides)
-    corners = tuple(lower - margin), tuple(upper + margin)
-    return Grid(*corners, water.spacing, lanes, periods, tuple(outline.min(axis=0)), len(tanks))
+    corners, origin = (tuple(lower - margin), tuple(upper + margin)), tuple(outline.min(axis=0))
+    return Grid(*corners, water.spacing, lanes, periods, origin, len(tanks), watched_box(water, tanks))
+
+
+def watched_box(water: Water, tanks: Sequence[Tank]) -> tuple[np.ndarray, np.ndarray] | None:
+    """Corners (m) of the box round all `tanks` and what their walls reach; None where no water may leave them."""
+    if not water.walls or not any(tank.open_edges for tank in tanks):
+        return None
+    corners = np.concatenate([tank.outline for tank in tanks])
+    return corners.min(axis=0) - water.reach, corners.max(axis=0) + water.reach

@@ -143,9 +143,9 @@ class WaterMatter(Matter):
         return self.mover.fastest[u]
 
     @ti.func
-    def is_sound(self, speed, dt):
-        """Whether a speed (m/s) is one that the liquid bears: up to Mach 0.5."""
-        return speed < self.constants.get("fastest")
+    def is_sound(self, u, speed, dt):
+        """Whether a unit's speed is one that the liquid bears: up to Mach 0.5."""
+        return self.mover.bears(u)
 
     @ti.func
     def way(self, u, t):

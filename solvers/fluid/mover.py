@@ -1,5 +1,6 @@
 """From forces and rates to motion: kick, drifts, and the step of density, in a tank that may move."""
 
+import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
@@ -20,7 +21,8 @@ class Mover:
 
     Velocities are kept half a step behind and carried from the middle of one step to that of the next: the scheme is
     kick–drift–kick with its two half kicks in one. They are inertial ones in the tank's axes (`Poses`). `fastest`
-    (units,) m/s and `deviation` (units,), of the density, where DENSEST is the most, tell why a world was stopped.
+    (units,) m/s and `deviation` (units,), of the density, where DENSEST is the most, tell why a world was stopped. Of
+    open tanks, `within` (units,) m/s is the largest speed of what has not left them (`Grid.watched`).
     """
 
     def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, vent: Vent, fullness: Fullness, pace: Pace):
@@ -30,6 +32,11 @@ class Mover:
         self.pace = pace
         own = arrays.under("water.mover")
         self.fastest, self.deviation = own.reals((medium.units.axis,), "fastest", "deviation", kept=False)
+        box = medium.lists.order.grid.watched
+        self.spills = box is not None
+        if self.spills:
+            (self.within,) = own.reals((medium.units.axis,), "within", kept=False)
+            self.box = own.holding("box", np.concatenate(box), "number", own.place)
 
     @ti.func
     def kick(self, u, frame, kick, dt):
@@ -65,7 +72,7 @@ class Mover:
         p, c = self.particles, self.constants
         w = self.units.world(u)
         first, end = self.shares.wet(u)
-        farthest, deviation, tame, paced = p.zeros(), p.zeros(), p.zeros(), p.zeros()
+        farthest, deviation, tame, paced, watched = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
         for b in range(first, end):
             filled = p.filled(b)
             gas = p.gases(b)
@@ -89,7 +96,10 @@ class Mover:
             farthest = ti.max(farthest, gone)
             if ti.static(c.two):
                 pace = (1.0 - gas) + gas * c.get("air_pace")
-                paced = ti.max(paced, gone * (pace * pace))
+                gone *= pace * pace
+                paced = ti.max(paced, gone)
+            if ti.static(self.spills):
+                watched = ti.max(watched, gone * self.is_within(b))
         second, deviated = ti.sqrt(self.largest(farthest)), ti.sqrt(self.largest(deviation))
         whole = self.lists.last[u] + second
         if ti.static(self.bodies.moving):
@@ -102,7 +112,27 @@ class Mover:
             self.fastest[u] = 2.0 * ti.sqrt(self.largest(paced)) / dt
         if not tame.sum() < 1e30:  # largest values may pass over what is no number, sums do not
             self.deviation[u] = tame.sum()
-        return self.fastest[u] < c.get("fastest") and self.deviation[u] < DENSEST
+        if ti.static(self.spills):
+            self.within[u] = 2.0 * ti.sqrt(self.largest(watched)) / dt
+        return self.bears(u) and self.deviation[u] < DENSEST
+
+    @ti.func
+    def bears(self, u):
+        """Whether the liquid bears the speed of a unit's particles, those that have left an open tank aside."""
+        speed = self.fastest[u]
+        if ti.static(self.spills):
+            speed = self.within[u]
+        return speed < self.constants.get("fastest")
+
+    @ti.func
+    def is_within(self, b):
+        """1 for the particles of a block that are in the box that is watched, else 0."""
+        p, found = self.particles, self.particles.ones()
+        for a in ti.static(range(p.axes)):
+            place = p.load(p.place[a], b)
+            beyond = ti.max(self.box[a] - place, place - self.box[2 + a])
+            found *= ti.select(beyond > 0.0, p.zeros(), p.ones())
+        return found
 
     @ti.func
     def drift(self, w, b, filled, half, part: ti.template()):

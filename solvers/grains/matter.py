@@ -99,10 +99,10 @@ class GrainMatter(Matter):
         speed = self.mover.move(self.grains, u, frame, kick, dt)
         if ti.static(not self.units.single):
             self.lists.travel[u] = self.lists.travel[u] + (speed + self.unseen) * dt
-        return self.is_sound(speed, dt)
+        return self.is_sound(u, speed, dt)
 
     @ti.func
-    def is_sound(self, speed, dt):
+    def is_sound(self, u, speed, dt):
         """Whether a speed (m/s) is one the step bears; not one that is no number."""
         return speed * dt < self.way_a_step[0]
 

@@ -103,8 +103,8 @@ class Matter:
         return 0.0
 
     @ti.func
-    def is_sound(self, speed, dt):
-        """Whether a speed (m/s) is one that steps of dt (s) bear."""
+    def is_sound(self, u, speed, dt):
+        """Whether a unit's speed (m/s) is one that steps of dt (s) bear."""
         return True
 
     @ti.func

@@ -11,7 +11,17 @@ from lab.studies.reproduce import figures
 from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ships import breaking, capsizes, coupled, damping, low_sides, rolls, section, tuning
+from lab.studies.reproduce.ships import (
+    breaking,
+    capsizes,
+    coupled,
+    damping,
+    four_ways,
+    low_sides,
+    rolls,
+    section,
+    tuning,
+)
 from lab.studies.reproduce.water import (
     chamfer,
     dam_break,
@@ -33,7 +43,20 @@ def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[S
 # Numbers of single runs without scatter from bed to bed; NaN where a run has none.
 OF_ONE_RUN = {
     name: _alone(*number)
-    for of in (impact, dam_break, waves, damper, prismatic, chamfer, drag, sinking, surfaces, coupled, breaking)
+    for of in (
+        impact,
+        dam_break,
+        waves,
+        damper,
+        prismatic,
+        chamfer,
+        drag,
+        sinking,
+        surfaces,
+        coupled,
+        four_ways,
+        breaking,
+    )
     for name, number in of.NUMBERS.items()
 }
 DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
@@ -77,6 +100,7 @@ FIGURES: Mapping[str, Callable] = {
     "coupled response": coupled.figure,
     "coupled spectra": coupled.spectra,
     "coupled heave and roll": coupled.heave_and_roll,
+    "roll in four ways": four_ways.figure,
     "tank tuning": tuning.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {

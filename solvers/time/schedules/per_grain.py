@@ -103,7 +103,7 @@ class PerGrain:
                     speed = self.matters[k].speed(u)
                     ti.atomic_max(self.clock.fastest[w], speed)
                     ti.atomic_max(self.clock.farthest[w], self.matters[k].way(u, time))
-                    if not self.matters[k].is_sound(speed, step):
+                    if not self.matters[k].is_sound(u, speed, step):
                         self.clock.status[w] = TOO_FAST
 
     @ti.kernel

@@ -1,11 +1,14 @@
 """Numbers of the report on water in ships: an order of convergence, the tuning of an anti-roll tank."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from lab.preset.find import load
 from lab.studies.reproduce.ships.breaking import has_air_below
 from lab.studies.reproduce.ships.coupled import limit_and_order
+from lab.studies.reproduce.ships.four_ways import swings
 from lab.studies.reproduce.ships.tuning import Swing, closed_form, tuned
 
 
@@ -49,3 +52,18 @@ def test_water_over_air_is_seen():
     assert not has_air_below(0.1 * pool, 0.1)
     assert not has_air_below(0.1 * np.concatenate([pool, [[3.0, 4.0]]]), 0.1)
     assert has_air_below(0.1 * np.concatenate([pool, [[3.0, 5.0]]]), 0.1)
+
+
+def test_a_decay_tells_both_swings_and_their_damping():
+    """Of two decaying swings, the faster gone after two periods, on a list; the heel before the release is not seen."""
+    time = np.arange(0.0, 25.0, 0.02)
+    late = time - 2.0
+    slow, fast = (4.2, 0.05, 0.06), (5.9, 0.1, 0.03)  # rad/s, of the critical, rad
+    roll = sum(a * np.exp(-z * w * late) * np.cos(np.sqrt(1.0 - z * z) * w * late) for w, z, a in (slow, fast))
+    pose = np.zeros((len(time), 1, 3))
+    pose[:, 0, 2] = 0.01 + np.where(late > 0.0, roll, 0.09)
+    preset = SimpleNamespace(ship=SimpleNamespace(release=2.0))
+    one = SimpleNamespace(recording=SimpleNamespace(series={"time": time, "pose": pose}, preset=preset))
+    for (damped, damping), (frequency, share, _) in zip(swings(one), (slow, fast), strict=True):
+        assert damped == pytest.approx(frequency * np.sqrt(1.0 - share**2), rel=1e-3)
+        assert damping == pytest.approx(share, rel=0.03)

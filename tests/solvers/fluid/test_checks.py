@@ -1,44 +1,78 @@
 """What stops a run of water, and what is said of it: of what has left the tank, of energy made, of what is squeezed."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from solvers.fluid.checks import CREATED, check_water, outside, refuse_state
+from solvers.fluid.given import VELOCITY_Z, Water
+from solvers.fluid.grid import watched_box
 from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE
 from solvers.machine.errors import BadState
+from solvers.simulation import Simulation
 from solvers.tank.tank import Tank
-from tests.oracles.water import box
+from tests.oracles.water import GRAVITY, again, box, lattice, still
 
-NEAR = 0.02  # m
+SMALL = Water(spacing=5e-3, sound_speed=17.0)  # m, m/s
 # In the tank, above its brim, beside it, below it, and at its wall's outside within the reach of water inside.
-PLACES = np.array([[0.0, 0.1], [0.0, 0.7], [0.4, 0.1], [0.1, -0.5], [0.31, 0.3]])
+PLACES = np.array([[0.0, 0.1], [0.0, 0.7], [0.4, 0.1], [0.1, -0.5], [0.3 + 0.5 * SMALL.reach, 0.3]])
+OPEN = Tank(box(0.6, 0.6), 1.0, (2,))
 
 
-def test_water_beside_and_below_a_tank_is_outside():
-    tank = Tank(box(0.6, 0.6), 1.0, (2,))
-    np.testing.assert_array_equal(outside(PLACES, [tank], NEAR), [False, False, True, True, False])
-    beside = Tank(box(0.6, 0.6) + np.array([0.6, 0.0]), 1.0, (2,))
-    np.testing.assert_array_equal(outside(PLACES, [tank, beside], NEAR), [False, False, False, True, False])
+def test_water_beyond_an_open_tank_is_outside():
+    np.testing.assert_array_equal(outside(PLACES, watched_box(SMALL, [OPEN])), [False, True, True, True, False])
+    beside = Tank(box(0.6, 0.6) + np.array([0.6, 0.0]), 1.0)
+    both = watched_box(SMALL, [OPEN, beside])
+    np.testing.assert_array_equal(outside(PLACES, both), [False, True, False, True, False])
 
 
-def test_spilled_water_that_falls_fast_is_told_as_such():
-    """One sentence that says how much is out, and names the keys that keep it in."""
-    spilled = outside(PLACES, [Tank(box(0.6, 0.6), 1.0, (2,))], NEAR)
-    particles = {
-        "place": PLACES,
-        "speed": np.array([0.0, 1.0, 3.0, 9.0, 0.0]),
-        "excess": np.zeros(5),
-        "gas": np.zeros(5),
-    }
-    with pytest.raises(BadState) as error:
-        refuse_state(0, {**particles, "span": np.ones(5), "spilled": spilled}, 1.5, 17.0)
-    said = str(error.value)
-    assert "40 % of the water has left the open tank" in said and "9 m/s by t = 1.5 s" in said
-    assert "tank.lid" in said and said.count(". ") == 0
-    with pytest.raises(BadState, match=r"Mach 0\.53"):
-        refuse_state(0, {**particles, "span": np.ones(5), "spilled": np.zeros(5, dtype=bool)}, 1.5, 17.0)
+def test_nothing_is_outside_of_closed_tanks():
+    assert watched_box(SMALL, [replace(OPEN, open_edges=())]) is None
+    assert not outside(PLACES, None).any()
+
+
+@pytest.fixture(scope="module")
+def poured():
+    """A drop in an open tank, and one beside it on which nothing acts but gravity."""
+    drops = lattice(0.04, 0.01, 5e-3, 4.0)
+    drops[0, 0, :2] = 0.2, 0.0
+    scene = still(0.1, 0.05, 0.01, 2, drops=drops, open_edges=(2,), sound_speed=4.0)
+    run = Simulation(replace(scene, step=scene.time_step()), threads=1, arch="cpu")
+    yield run
+    run.close()
+
+
+@pytest.mark.slow
+def test_what_has_left_an_open_tank_may_fall_as_fast_as_it_will(poured):
+    poured.advance(round(0.5 / poured.dt))
+    seen = poured.snapshot()
+    assert seen["water_velocity"][0, 0] == pytest.approx([0.0, -0.5 * GRAVITY], abs=0.02)  # Mach 1.2
+    assert seen["water_place"][0, 0, 1] == pytest.approx(-0.125 * GRAVITY, abs=0.02)
+    assert np.abs(seen["water_velocity"][0, 1:]).max() < 0.5
+
+
+@pytest.mark.slow
+def test_what_is_in_an_open_tank_may_not(poured):
+    drops = poured.scene.drops.copy()
+    drops[0, 0, :2], drops[0, 0, VELOCITY_Z] = (0.0, 0.03), 3.0
+    run = again(poured, replace(poured.scene, drops=drops))
+    with pytest.raises(BadState, match=r"water moves at [23.]+.* m/s, Mach 0\.[67]"):
+        run.advance(10)
+
+
+@pytest.mark.slow
+def test_what_comes_back_into_an_open_tank_is_watched_again(poured):
+    """Thrown down from above the brim it is let pass until it is in the box."""
+    drops = poured.scene.drops.copy()
+    high = 0.05 + 2.0 * poured.scene.water.reach
+    drops[0, 0, :2], drops[0, 0, VELOCITY_Z] = (0.0, high), -3.0
+    run = again(poured, replace(poured.scene, drops=drops))
+    run.advance(2)
+    assert run.snapshot()["water_place"][0, 0, 1] < high
+    with pytest.raises(BadState, match=r"water moves at [23.]+.* m/s, Mach 0\.[67].*z = 0\.0[456]"):
+        run.advance(200)
 
 
 @pytest.mark.parametrize(
@@ -52,7 +86,7 @@ def test_what_is_squeezed_is_named(gas, said):
         "span": np.ones(5),
     }
     with pytest.raises(BadState, match=said):
-        refuse_state(0, {**particles, "gas": np.full(5, gas), "spilled": np.zeros(5, dtype=bool)}, 1.5, 17.0)
+        refuse_state(0, {**particles, "gas": np.full(5, gas)}, 1.5, 17.0)
 
 
 SOUND = {"escaped": -1.0, "work": 4.0, "viscous": 3.0, "diffusive": 2.0, "kinetic": 1.0, "held": 0.5, "total": 100.0}
@@ -97,7 +131,6 @@ def test_energy_from_nothing_stops_the_run():
 def test_what_is_no_number_stops_the_run():
     """It is told where, by a neighbour that still has a place if it has none itself."""
     fine = {"place": PLACES, "speed": np.zeros(5), "excess": np.zeros(5), "span": np.ones(5), "gas": np.zeros(5)}
-    fine["spilled"] = np.zeros(5, dtype=bool)
     for name in ("place", "speed", "excess"):
         broken = {key: values.copy() for key, values in fine.items()}
         broken[name][2] = np.nan
@@ -113,6 +146,6 @@ def test_spray_and_the_surface_may_be_squeezed_more_than_water_within(whose, oth
     span, most = {"within": 1.0, "spray": 0.5 * INSIDE}, {"within": DENSEST, "spray": DENSEST_SPRAY}
     excess = np.array([0.0, 0.0, 1.01 * most[whose], 0.0, 0.9 * most[other]])
     spans = np.array([1.0, 1.0, span[whose], 1.0, span[other]])
-    fine = {"place": PLACES, "speed": np.zeros(5), "gas": np.zeros(5), "spilled": np.zeros(5, dtype=bool)}
+    fine = {"place": PLACES, "speed": np.zeros(5), "gas": np.zeros(5)}
     said = refused(refuse_state, 1, {**fine, "excess": excess, "span": spans}, 1.5, 17.0)
     assert f"off by {101.0 * most[whose]:.3g} % at y = 0.4 m" in said
