@@ -1,5 +1,6 @@
 """The water of a scene, and its particles at rest, from a preset."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,11 +14,13 @@ from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.flow import compressed, stirred, torsion, vortex_pressure, vortices
 from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share, surfaces
+from solvers.fluid.start.plates import is_slanted
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.fluid.timestep import steps_of_water
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.tank.outline import moments
+from solvers.tank.parts import Part
 
 VELOCITY = [VELOCITY_Y, VELOCITY_Z]
 
@@ -34,18 +37,23 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     """The particles (n, 6) of the water in a tank, by default the first. Raises LabError if none fits in."""
     pool = pool or pools(preset)[0]
     water = liquid(preset)
-    if preset.parts or water.periodic:  # which a lattice is cut off at, or goes on across; a packing knows of neither
+    parts = [part.wet for part in preset.parts.values()]
+    beside = parts if water.start == "packed" and any(map(is_slanted, parts)) and not water.periodic else []
+    if (parts and not beside) or water.periodic:  # a lattice is cut off at bodies and upright plates, or goes on across
         water = replace(water, start="lattice")
     borne = preset.water.radius is None and "z" not in water.periodic
     try:
-        drops = at_rest(pool.polygon, pool.level, water, preset.run.gravity if borne else 0.0)
+        gravity = preset.run.gravity if borne else 0.0
+        drops = at_rest(pool.polygon, pool.level, water, gravity, beside, np.array(preset.tank.corners))
         if water.air:
             return with_air(drops, _air_of(preset, water))
     except ValueError as error:
         raise LabError(f"water.spacing: {error}; take smaller particles.") from None
     if preset.water.flow:
         _set_going(preset, drops)
-    return _beside_parts(preset, drops) if preset.parts else drops
+    if parts and preset.water.region is not None:
+        _under_surfaces(preset, drops)
+    return _cut_off(preset, drops, parts) if parts and not beside else drops
 
 
 def _set_going(preset: Preset, drops: np.ndarray) -> None:
@@ -70,13 +78,16 @@ def _air_of(preset: Preset, water: Water) -> np.ndarray:
     return air_round(tank, polygon, water, preset.run.gravity)
 
 
-def _beside_parts(preset: Preset, drops: np.ndarray) -> np.ndarray:
-    """The particles (n, 6) that parts leave free; in a region each stands under the surface right above it."""
+def _under_surfaces(preset: Preset, drops: np.ndarray) -> None:
+    """Give each of the particles (n, 6) of a region the density under the surface right above it."""
     water, (polygon, level) = liquid(preset), bounds(preset)
-    parts = [part.wet for part in preset.parts.values()]
-    if preset.water.region is not None:
-        depth = surfaces(drops[:, [Y, Z]], polygon, level) - drops[:, Z]
-        drops[:, EXCESS] = hydrostatic_excess(depth, preset.run.gravity, water.sound_speed, water.state)
+    depth = surfaces(drops[:, [Y, Z]], polygon, level) - drops[:, Z]
+    drops[:, EXCESS] = hydrostatic_excess(depth, preset.run.gravity, water.sound_speed, water.state)
+
+
+def _cut_off(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> np.ndarray:
+    """Those of the particles (n, 6) of a lattice that parts leave free."""
+    water, (polygon, level) = liquid(preset), bounds(preset)
     whole = drops[:, VOLUME].sum()
     drops = drops[clear_of(drops[:, [Y, Z]], parts, water.spacing)]
     if not len(drops):

@@ -41,6 +41,7 @@ PRECISIONS = {
 sources.remember()
 compiling.watch()
 compiling.compute_once()
+compiling.copy_once()
 
 _most_cores = 2**31
 _running: tuple | None = None

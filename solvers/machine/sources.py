@@ -1,14 +1,17 @@
 """How Taichi finds its way in the source of the functions that it traces.
 
-Taichi 1.7.4 looks up and splits the source of a function anew for every place that calls it, and draws, for every
-expression, the source lines with a mark under them, in case that one is wrong: the latter half of the time that a
-simulation took to set up. For every field it formats the whole stack of calls that declared it. For every function it
-goes through all modules to see whether it stands in a class: a quarter of the time that the lab took to start.
+Taichi 1.7.4 looks up and splits the source of a function anew for every place that calls it, wraps its lines, and
+draws, for every expression, the source lines with a mark under them, in case that one is wrong: the latter half of the
+time that a simulation took to set up. For every field it formats the whole stack of calls that declared it. For every
+function it goes through all modules to see whether it stands in a class: a quarter of the time that the lab took to
+start.
 """
 
 import linecache
 import sys
+import textwrap
 from functools import cache
+from types import SimpleNamespace
 
 from taichi.lang import impl, kernel_impl
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
@@ -19,6 +22,7 @@ def remember() -> None:
     ASTTransformerContext.get_pos_info = _place
     impl.get_traceback = _nowhere
     kernel_impl._inside_class = _inside_class
+    kernel_impl.textwrap = SimpleNamespace(fill=cache(textwrap.fill), dedent=cache(textwrap.dedent))
     for name in ("getsourcefile", "getsourcelines"):
         find = getattr(kernel_impl, name)
         if not hasattr(find, "cache_info"):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import taichi as ti
 from taichi.lang.expr import Expr
-from taichi.lang.impl import subscript
+from taichi.lang.impl import expr_init, subscript
 from taichi.lang.matrix import make_matrix
 
 from solvers.machine import compiling
@@ -73,6 +73,7 @@ class _Block(Expr):
         self._lanes = lanes
 
     def _assign(self, value: Expr) -> None:
+        value = expr_init(value)
         for k, lane in enumerate(self._lanes):
             lane._assign(subscript(None, value, k))
 

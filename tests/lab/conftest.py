@@ -25,6 +25,14 @@ def coarse_figures():
         yield
 
 
+@pytest.fixture(scope="module")
+def no_plots():
+    """Runs without plots, which take long and are tested elsewhere."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
+        yield
+
+
 @pytest.fixture
 def roughly_packed(monkeypatch):
     """Water that is not evened out before the start, for tests that only ask whether scenes can be built, and so on."""

@@ -160,6 +160,7 @@ class Crowd:
         (inner, t), (outer, t_outer) = self.pairs()
         factor, count = WendlandC2.factors(self.length)[1], len(self.points)
         weight, weight_outer = factor * self.volume * (t * t * t), self.share * (factor * (t_outer * t_outer * t_outer))
+        weight, weight_outer = self.parted(weight, weight_outer)
         found = np.empty_like(self.points)
         for a in range(2):
             push = weight * inner[a]
@@ -171,8 +172,13 @@ class Crowd:
         """Γ = Σ V W (n,) of each particle, itself included."""
         inner, outer = (WendlandC2.printed(2.0 * self.length * (1.0 - t), self.length) for _, t in self.pairs())
         count, alone = len(self.points), WendlandC2.factors(self.length)[0]
+        inner, outer = self.parted(inner, self.share * outer)
         each = np.bincount(self.first, inner, count) + np.bincount(self.second, inner, count) + alone
-        return self.volume * each + np.bincount(self.wet, self.share * outer, count)
+        return self.volume * each + np.bincount(self.wet, outer, count)
+
+    def parted(self, inner: np.ndarray, outer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Weights of pairs of particles, and of particles and dummies, but for what is hidden: nothing here."""
+        return inner, outer
 
 
 def columns(points: np.ndarray) -> np.ndarray:

@@ -1,13 +1,15 @@
 """Water at rest: its particles, under hydrostatic pressure."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
 from solvers.fluid.start.lattice import lattice
 from solvers.fluid.start.packing import packed
+from solvers.fluid.start.plates import packed_beside
 from solvers.fluid.states.tait import GAMMA
+from solvers.tank.parts import Part
 
 EXPONENTS = {"linear": 1, "tait": GAMMA}  # γ of the equations of state
 
@@ -39,13 +41,26 @@ def hydrostatic_excess(depth: np.ndarray, gravity: float, sound: float, state: s
     return np.expm1(np.log1p(more * share) / more) if more else np.expm1(share)
 
 
-def at_rest(polygon: np.ndarray, level: float, water: Water, gravity: float) -> np.ndarray:
+def at_rest(
+    polygon: np.ndarray,
+    level: float,
+    water: Water,
+    gravity: float,
+    parts: Sequence[Part] = (),
+    outline: np.ndarray | None = None,
+) -> np.ndarray:
     """The particles (n, 6) of water at rest in a polygon up to a level (m); columns as of `Scene.drops`.
+
+    Beside `parts` in a tank with this `outline` (m, 2) m they are packed, see `packed_beside`.
 
     Each has the volume that it takes, so that its mass ρ0 (1 + s) V is that of the compressed water: with equal masses
     the level would sink by g H²/(2 c0²). Raises ValueError if no particle fits in.
     """
-    points, volume = STARTS[water.start](polygon, level, water)
+    if parts:
+        packing = packed_beside(polygon, level, water, parts, outline)
+        points, volume = packing.points, packing.volume
+    else:
+        points, volume = STARTS[water.start](polygon, level, water)
     drops = np.zeros((len(points), 6))
     drops[:, [Y, Z]] = points
     drops[:, EXCESS] = hydrostatic_excess(level - points[:, 1], gravity, water.sound_speed, water.state)

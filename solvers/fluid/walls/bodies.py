@@ -94,8 +94,8 @@ class Bodies:
         """Note how the parts of a world move in the step of dt (s) from time t (s)."""
         half, farthest = 0.5 * ti.cast(dt, self.exact), ti.cast(0.0, self.exact)
         for k in ti.static(range(self.count)):
-            for part in ti.static(range(3)):
-                first = ti.static(7 * part)
+            for part in range(3):
+                first = 7 * part
                 self.pose[w, k, first + COSINE] = 1.0
                 if ti.static(self.carriers[k].moving):
                     s = self.carriers[k].kinematics(w, t + part * half)
@@ -105,7 +105,7 @@ class Bodies:
                     self.pose[w, k, first + RATE] = s[5]
                     fast = ti.sqrt(s[3] * s[3] + s[4] * s[4]) + ti.abs(s[5]) * self.arms[k]
                     farthest = ti.max(farthest, fast * 2.0 * half)
-                    if ti.static(part == AT_START):
+                    if part == AT_START:
                         self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k] = s[6], s[7], s[8]
         self.way[w] = ti.cast(farthest, self.particles.real)
         if ti.static(len(self.sight.plates) > 0):

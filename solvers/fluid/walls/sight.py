@@ -50,6 +50,7 @@ class Sight:
             lengths = np.array([water.reach, TOUCHES * water.spacing, water.length])
             self.lengths = own.holding("lengths", lengths, "length", own.exact)
             self.drawn = own.holding("drawn", lines, "plate number", own.exact)
+            self.parts = own.holding("parts", np.array(self.plates), "plate", ti.i32)
             edges = np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)])
             self.edges, self.outline = len(edges), own.holding("outline", edges, "edge number", own.exact)
             each = Axis("world", worlds), Axis("plate", len(self.plates)), Axis("number", 2 * OF_LINE)
@@ -65,14 +66,14 @@ class Sight:
     @ti.func
     def note(self, w, poses: ti.template()):
         """Note where the plates of a world are at the start and in the middle of a step, by their bodies' `poses`."""
-        for q in ti.static(range(len(self.plates))):
-            for part in ti.static((AT_START, AT_MIDDLE)):
+        for q in range(len(self.plates)):
+            for part in range(AT_START, AT_MIDDLE + 1):
                 self.note_line(w, q, poses, part)
 
     @ti.func
-    def note_line(self, w, q: ti.template(), poses: ti.template(), part: ti.template()):
+    def note_line(self, w, q, poses: ti.template(), part):
         """Note where a plate is, and whether its ends touch the tank's wall."""
-        first, at, k = ti.static(OF_LINE * part), ti.static(7 * part), self.plates[q]
+        first, at, k = OF_LINE * part, 7 * part, self.parts[q]
         cos, sin = poses[w, k, at + COSINE], poses[w, k, at + SINE]
         y = [poses[w, k, at + Y] + cos * self.drawn[q, n] - sin * self.drawn[q, n + 1] for n in ti.static((0, 2))]
         z = [poses[w, k, at + Z] + sin * self.drawn[q, n] + cos * self.drawn[q, n + 1] for n in ti.static((0, 2))]
@@ -112,7 +113,7 @@ class Sight:
         w, own, other = b // p.stride, b % p.stride - before, jb % p.stride - before
         share, reach = p.ones(), ti.cast(self.lengths[REACH], p.real)
         sharp = ti.cast(1.0 / self.lengths[BLUR], p.real)
-        for q in ti.static(range(len(self.plates))):
+        for q in range(len(self.plates)):
             first = ti.static(OF_LINE * part)
             t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
             y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
@@ -138,9 +139,9 @@ class Sight:
         p = self.particles
         w, off = b // p.stride, p.ones()
         far = ti.cast(FAR * self.lengths[REACH], p.real)
-        for q in ti.static(range(len(self.plates))):
+        for q in range(len(self.plates)):
             first = ti.static(OF_LINE * part)
-            for n in ti.static(range(2)):
+            for n in range(2):
                 if self.line[w, q, first + IN_LOW + n] == 0.0:
                     way = self.line[w, q, first + LOW + n]
                     y = self.line[w, q, first + LINE_Y] + way * self.line[w, q, first + ALONG_Y]

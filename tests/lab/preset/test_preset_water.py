@@ -329,3 +329,16 @@ def test_water_leaves_room_for_bodies_and_stands_at_its_level_on_either_side_of_
     sound = liquid(wet(parts__gate=GATE, **given, **region)).sound_speed
     level = np.where(drops[:, Y] < 0.0, 0.1, 0.05)
     np.testing.assert_allclose(np.log1p(drops[:, EXCESS]) * sound**2, 10.0 * (level - drops[:, Z]), rtol=1e-9)
+
+
+def test_water_is_packed_beside_slanted_plates_and_cut_from_a_lattice_beside_others():
+    """A lattice has ten heights; both have the water's volume and its weight's pressure."""
+    for top, packs in (("0 mm", False), ("40 mm", True)):
+        plate = {"points": [["0 mm", "0 mm"], [top, "60 mm"]]}
+        made = wet(parts__baffle=plate, water__spacing="10 mm", run__gravity="10 m/s^2")
+        drops, sound = drops_of(made), liquid(made).sound_speed
+        assert (len(np.unique(np.round(drops[:, Z], 6))) > 100) == packs
+        assert drops[:, VOLUME].sum() == pytest.approx(0.9 * 0.1, rel=1e-9)
+        np.testing.assert_allclose(np.log1p(drops[:, EXCESS]) * sound**2, 10.0 * (0.1 - drops[:, Z]), rtol=1e-9)
+        lattice = wet(parts__baffle=plate, water__spacing="10 mm", water__start="lattice")
+        assert len(np.unique(np.round(drops_of(lattice)[:, Z], 6))) == 10

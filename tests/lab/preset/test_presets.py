@@ -20,7 +20,7 @@ from lab.preset.fields import walk
 from lab.preset.find import QUICK, load, names
 from lab.preset.merge import merged, nested
 from lab.preset.outline import area, simple_polygon
-from lab.preset.recorded import from_table, to_table
+from lab.preset.recorded import resolved_from, to_table
 from lab.preset.schema import Preset, resolve
 from solvers.machine.marks import Interval, Unit
 from solvers.motion import MOTIONS, Tilt
@@ -112,8 +112,9 @@ def cost(preset: Preset) -> float:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_resolved_goes_to_json_and_back(name):
+    """And a recording may have it: it is within the limits of what a file from an unknown source may say."""
     resolved = as_shipped(name).resolved
-    assert from_table(to_table(resolved)) == resolved
+    assert resolved_from(to_table(resolved)) == resolved
 
 
 def test_names_are_sorted_with_titles():

@@ -12,6 +12,8 @@ from lab.runs.batch import Batch
 from lab.runs.runner import resume_run, run_preset
 from solvers.machine.runtime import initialise
 
+pytestmark = pytest.mark.usefixtures("no_plots")
+
 CUP = """
 format = 3
 title = "A closed cup of water and air"
@@ -30,10 +32,8 @@ record.checkpoint_every = "0 s"
 def cup(tmp_path_factory):
     path = tmp_path_factory.mktemp("airy") / "cup.toml"
     path.write_text(CUP)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
-        run_preset(path, out=path.parent / "run", video=False, quiet=True)
-        yield path
+    run_preset(path, out=path.parent / "run", video=False, quiet=True)
+    return path
 
 
 @pytest.mark.slow
@@ -43,7 +43,6 @@ def test_an_interrupted_run_goes_on_over_the_moment_at_which_its_air_becomes_sti
     late = cup.parent / "late.toml"
     late.write_text(CUP.replace("air = {}", 'air = { sound_speed = "96 m/s", stiff_from = "0.2 s" }'))
     if not (late.parent / "run-late").exists():
-        monkeypatch.setattr("lab.report.plots.write_plots", lambda *_: {})
         run_preset(late, out=late.parent / "run-late", video=False, quiet=True)
     goes_on(late, late.parent / "run-late", late.parent / f"again-{pauses}", monkeypatch, pauses)
     text = (late.parent / f"again-{pauses}" / "summary.md").read_text()
@@ -64,7 +63,6 @@ def goes_on(path, whole, folder, monkeypatch, pauses: int) -> None:
         if len(paused) == pauses:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr("lab.report.plots.write_plots", lambda *_: {})
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(Batch, "_pause", interrupted)
         run_preset(path, out=folder, video=False, quiet=True)

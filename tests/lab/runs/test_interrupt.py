@@ -18,18 +18,6 @@ from lab.view.worker import begin
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
 
 ROOT = Path(__file__).parents[3]
-ENDLESS = {
-    "tank.width": "24 mm",
-    "tank.height": "24 mm",
-    "grains.count": 16,
-    "motion.tilt.rate": "60 deg/s",
-    "motion.tilt.angle": "20 deg",
-    "motion.tilt.hold": "1000 s",
-    "run.repeats": 2,
-    "run.threads": 1,
-    "record.checkpoint_every": "50 ms",  # with it go the rows that a reader is to see
-    "contact.tangential": "none",  # kernels of few laws compile fast
-}
 TANK = """
 format = 3
 title = "An empty tank"
@@ -126,9 +114,8 @@ def assert_summed_up(folder: Path) -> None:
     assert (folder / "checkpoint.npz").exists()
 
 
-def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_continue(tmp_path):
-    settings = [word for key, value in ENDLESS.items() for word in ("--set", f"{key}={value}")]
-    run = endless_run(tmp_path / "run", "tilting/quick", *settings, preexec_fn=ignore_hangups)
+def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_continue(tank, tmp_path):
+    run = endless_run(tmp_path / "run", tank, preexec_fn=ignore_hangups)
     run.send_signal(signal.SIGHUP)
     rows = wait_for_rows(tmp_path / "run", 1, run)
     wait_for_rows(tmp_path / "run", rows + 1, run)

@@ -28,6 +28,8 @@ from lab.runs.runner import hint, resume_run, run_preset
 from tests.oracles.synthetic import frame, recorder, sample
 from tests.oracles.tampering import flipped
 
+pytestmark = pytest.mark.usefixtures("no_plots")
+
 ROOT = Path(__file__).parents[3]
 SMALL = {
     "tank": {"width": "24 mm", "height": "24 mm"},
@@ -36,14 +38,6 @@ SMALL = {
     "run": {"repeats": 2, "threads": 1},
     "record": {"checkpoint_every": "0 s", "picture_rate": "50 Hz"},
 }
-
-
-@pytest.fixture(scope="module", autouse=True)
-def no_plots():
-    """Plots take long, and are tested elsewhere."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
-        yield
 
 
 @pytest.fixture(scope="module")

@@ -20,6 +20,8 @@ from lab.sweeps.dry_run import available_measures
 from lab.sweeps.sweep import run_sweep
 from solvers.fluid.start.rest import STARTS
 
+pytestmark = pytest.mark.usefixtures("no_plots")
+
 CUP = """
 format = 3
 title = "A cup of water"
@@ -39,14 +41,6 @@ def cup(tmp_path_factory):
     path = tmp_path_factory.mktemp("cup") / "cup.toml"
     path.write_text(CUP)
     return path
-
-
-@pytest.fixture(scope="module", autouse=True)
-def no_plots():
-    """Plots take long, and are tested elsewhere."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
-        yield
 
 
 @pytest.fixture(scope="module")

@@ -22,17 +22,11 @@ from lab.view import worker
 from lab.view.live import Live, own_motion, steerable
 from lab.view.replay import replay
 
+pytestmark = pytest.mark.usefixtures("no_plots")
+
 SMALL = {"tank.width": "40 mm", "tank.height": "40 mm", "grains.depth": "12 mm", "run.accuracy": "draft"}
 HAND = {3: ("sway", 0.02), 8: ("friction", 0.6), 12: ("gravity", 5.0), 15: ("tilt", -0.3), 20: ("roll", 0.2)}
 PIECES = 30
-
-
-@pytest.fixture(scope="module", autouse=True)
-def no_plots():
-    """Plots take long, and are tested elsewhere."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +130,7 @@ def test_a_real_window_takes_keys(window, tmp_path):
         return subprocess.run(["xdotool", *words], env=environment, capture_output=True, text=True).stdout
 
     def reds() -> int:
-        seen = np.asarray(ImageGrab.grab(xdisplay=display)).astype(int)
+        seen = np.asarray(ImageGrab.grab(xdisplay=display))
         return int(((seen[..., 0] > 180) & (seen[..., 1] < 60)).sum())
 
     settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]  # compiled already

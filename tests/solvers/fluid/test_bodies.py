@@ -7,6 +7,7 @@ import pytest
 
 from solvers.fluid.given import EXCESS, VOLUME
 from solvers.fluid.start.parts import clear_of
+from solvers.fluid.start.rest import at_rest
 from solvers.motion.harmonic import Heave, Roll, Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -148,6 +149,21 @@ def test_water_that_starts_as_a_lattice_round_free_ends_comes_to_rest(given, sec
     run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, drops=drops, alpha=0.02, **given), threads=1, arch="cpu")
     run.advance(round(seconds / run.dt))
     assert np.sqrt((run.snapshot()["water_velocity"][0] ** 2).sum(axis=1).mean()) < most
+
+
+@pytest.mark.parametrize("points", [((-0.1, 0.0), (0.05, 0.2)), ((-0.09, 0.08), (0.03, 0.24))])
+@pytest.mark.slow
+def test_water_packed_beside_a_slanted_plate_stays_still(points):
+    """Within 8 s, r.m.s., to 0.02 √(g Δx), the speed of a fall by Δx/5000: a lattice there stirs to six times of it."""
+    parts = (Body(points),)
+    scene = still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, alpha=0.02)
+    drops = at_rest(scene.outline, DEPTH, scene.water, GRAVITY, parts, scene.outline)[None]
+    run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, drops=drops, alpha=0.02), threads=1, arch="cpu")
+    for seconds in (4.0, 8.0):
+        run.advance(round(seconds / run.dt) - round(run.time / run.dt))
+        speed = np.sqrt((run.snapshot()["water_velocity"][0] ** 2).sum(axis=1).mean())
+        assert speed < 0.02 * np.sqrt(GRAVITY * SPACING)
+    run.close()
 
 
 @pytest.mark.slow

@@ -7,8 +7,10 @@ from scipy.spatial import Delaunay, cKDTree
 from solvers.fluid.given import Water
 from solvers.fluid.start import packing
 from solvers.fluid.start.packing import EVEN, STEPS, packed
+from solvers.fluid.start.plates import is_slanted, packed_beside
 from solvers.fluid.walls.layers import distance
 from solvers.tank.outline import area_below, cut_off
+from solvers.tank.parts import Body
 from solvers.tank.tank import Tank
 from tests.oracles.water import kernel
 
@@ -93,6 +95,43 @@ def test_it_is_the_same_in_every_call_and_has_no_order():
     a, b = cKDTree(first.points).query_pairs(0.012, output_type="ndarray").T
     along = first.points[b] - first.points[a]
     assert abs(np.cos(4.0 * np.arctan2(along[:, 1], along[:, 0])).mean()) < 0.5
+
+
+PLATES = {
+    "on the floor": Body(((-0.06, 0.0), (0.05, 0.2))),
+    "both ends in the water": Body(((-0.07, 0.08), (0.04, 0.22))),
+    "from floor to air": Body(((-0.1, 0.0), (0.1, 0.4))),
+}
+
+
+@pytest.mark.parametrize("name", PLATES)
+def test_it_is_even_beside_slanted_plates(name):
+    """Pushes and Γ as without plates; the row before each side is as near and as close as before a wall."""
+    plate, spacing = PLATES[name], 0.015
+    found = packed_beside(BOX, DEPTH, Water(spacing, 20.0), (plate,), BOX)
+    assert found.steps < STEPS and np.hypot(*found.push.T).max() < EVEN
+    assert np.abs(found.cover - 1.0).max() < GAMMA
+    assert found.volume * len(found.points) == pytest.approx(area_below(BOX, DEPTH), rel=1e-12)
+    start, end = np.array(plate.points)
+    way = (end - start) / np.hypot(*(end - start))
+    off = found.points - start
+    along, across = off @ way, off @ np.array([-way[1], way[0]])
+    top = min(np.hypot(*(end - start)), (DEPTH - start[1]) / way[1])
+    before = (along > 3.0 * spacing) & (along < top - 3.0 * spacing)  # farther than where the ends are transparent
+    for side in (1.0, -1.0):
+        row = before & (side * across > 0.0) & (side * across < spacing)
+        assert 0.25 * spacing < (side * across[row]).min() and (side * across[row]).min() < 0.6 * spacing
+        assert np.diff(np.sort(along[row])).max() < 2.0 * spacing
+    if name == "from floor to air":  # it parts the water: both sides have their share
+        left = area_below(np.array([BOX[0], plate.points[0], (0.05, DEPTH), (BOX[0][0], DEPTH)]), DEPTH)
+        assert (across > 0.0).sum() * found.volume == pytest.approx(left, abs=3.0 * spacing**2)
+
+
+def test_only_plates_that_are_parallel_to_no_axis_are_slanted():
+    """Beside the others, and beside bodies, presets start from a lattice."""
+    upright, level = Body(((0.0, 0.1), (0.0, 0.3))), Body(((0.0, 0.1), (0.2, 0.1)))
+    ridge = Body(((-0.1, 0.0), (0.1, 0.0), (0.0, 0.1)), closed=True)
+    assert [is_slanted(part) for part in (*PLATES.values(), upright, level, ridge)] == [True] * 3 + [False] * 3
 
 
 def test_water_that_holds_no_particle_is_refused():

@@ -18,23 +18,17 @@ def pressed(request):
     """Two grains pressed onto the floor and against one another, at rest; a third flies. And how it goes on unseen."""
     place = [[[0.0, RADIUS - OVERLAP], [APART, RADIUS - OVERLAP], [0.0, 5.0 * RADIUS]]]
     velocity = [[[0.0, 0.0], [0.0, 0.0], [SPEED, 0.0]]]
-
-    def made():
-        return simulation(
-            place, RADIUS, box(0.05, 0.05), material(young=1e7), velocity=velocity, schedule=request.param
-        )
-
-    run = made()
+    run = simulation(place, RADIUS, box(0.05, 0.05), material(young=1e7), velocity=velocity, schedule=request.param)
+    start = run.state()
     seen, again = run.observe(), run.observe()
     assert all(np.array_equal(seen[name], again[name]) for name in seen)
     run.advance(100)
     later = run.snapshot() | run.observe()
+    run.restore(start)
+    run.advance(100)
+    rest = run.snapshot() | run.observe()
     scene, mass = run.scene, run.grains.mass
     run.close()
-    unseen = made()
-    unseen.advance(100)
-    rest = unseen.snapshot() | unseen.observe()
-    unseen.close()
     return scene, mass, seen, later, rest
 
 

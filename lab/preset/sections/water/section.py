@@ -113,7 +113,7 @@ class Water:
     shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
     start: Annotated[
         Literal[*STARTS],
-        Doc("How the particles are laid: packed evenly up to walls of any slant, or as a square lattice."),
+        Doc("How the particles are laid: packed evenly up to walls and plates of any slant, or as a square lattice."),
     ] = "packed"
 
     @cached_property
