@@ -8,6 +8,8 @@ from lab.studies.reproduce.compare import number_of
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.costs import COSTS, cost
 
+STOPPED = "stopped"
+
 
 class Column(BaseModel):
     """A number of every run under a `head`: which (`of`, `given`) as in a claim, and how it is written.
@@ -24,10 +26,14 @@ class Column(BaseModel):
 
 
 def table(columns: Sequence[Column], found: Mapping[str, Sequence[Outcome]]) -> list[list[str]]:
-    """The table of runs of water, its heads first."""
+    """The table of runs of water, its heads first.
+
+    Of a run that was stopped its cost alone is told: its last cycles, or its highest water, are not the whole run's.
+    """
     made = [[*COSTS, *(one.head for one in columns)]]
     for run, outcomes in found.items():
-        made.append([*cost(run, outcomes[0]), *(_cell(one, run, outcomes) for one in columns)])
+        whole = all(one.status == "complete" for one in outcomes)
+        made.append([*cost(run, outcomes[0]), *(_cell(one, run, outcomes) if whole else STOPPED for one in columns)])
     return made
 
 

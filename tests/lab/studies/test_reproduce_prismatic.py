@@ -1,5 +1,7 @@
 """The prismatic tank: how runs are compared with the finest, what gauges show, and when water is at the roof."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -75,6 +77,16 @@ def test_pages_tell_peaks_in_the_upper_chamber():
     cells = dict(zip(*told.table, strict=True))
     assert [cells[f"mean peak at P{gauge}"] for gauge in (2, 3)] == ["90 ± 0 Pa (s.e.)", "dry"]
     assert cells["mean peak at P1, less at rest"] == "500 ± 0 Pa (s.e.)"
+
+
+def test_of_a_run_that_was_stopped_its_cost_alone_is_told():
+    """Its last nine cycles are those of the start."""
+    (one,) = hit("sloshing/source-p-50-roll", 1.34, 1015.0, [90.0] * 9)
+    ended = dataclasses.replace(one, status="stopped: world 0: the water is too fast at t = 9 s.")
+    ended.__dict__["recording"] = one.recording
+    told = experiments("water")["prismatic-half"].tell({"50 %, roll": [ended]})
+    cells = dict(zip(*told.table, strict=True))
+    assert cells["particles"] == "100" and cells["mean peak at P2"] == cells["highest water"] == "stopped"
 
 
 def test_chamfers_are_told_beside_those_of_50_mm():
