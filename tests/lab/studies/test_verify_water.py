@@ -6,9 +6,7 @@ import pytest
 from lab.studies.verify.water import (
     CASES,
     balance,
-    bubbles,
     drops,
-    interface,
     orifice,
     patch,
     rest,
@@ -17,6 +15,7 @@ from lab.studies.verify.water import (
     waves,
 )
 from lab.studies.verify.water.laplace import first_mode
+from lab.studies.verify.water.phases import bubbles, interface
 from lab.studies.verify.water.scenes import Swing, box, chamfered, order, order_line, swing
 from lab.studies.verify.water.vorticity import middle_pressure
 from solvers.fluid.start.rest import STARTS

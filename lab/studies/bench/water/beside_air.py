@@ -9,7 +9,7 @@ import numpy as np
 from lab.report.page import Page
 from lab.studies.bench.remembered import remembered
 from lab.studies.verify.water import waves
-from lab.studies.verify.water.interface import Between
+from lab.studies.verify.water.phases.interface import Between
 from lab.studies.verify.water.scenes import Swing
 from solvers.scene import Scene
 from solvers.simulation import Simulation

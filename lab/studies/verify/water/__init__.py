@@ -1,7 +1,8 @@
 """Water against closed forms: rest, waves, sloshing, viscous flow, free drops, and what must be kept."""
 
 from lab.studies.case import Case
-from lab.studies.verify.water import air, balance, bubbles, drops, orifice, patch, rest, sloshing, vortices, waves
+from lab.studies.verify.water import balance, drops, orifice, patch, rest, sloshing, vortices, waves
+from lab.studies.verify.water.phases import air, bubbles
 
 MODULES = (rest, waves, sloshing, orifice, vortices, drops, patch, balance, air, bubbles)
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.integrate import quad
 
 from lab.studies.case import Case, Found, Line
-from lab.studies.verify.water.interface import waves
+from lab.studies.verify.water.phases.interface import waves
 from lab.studies.verify.water.scenes import (
     G,
     bearing,
