@@ -154,7 +154,7 @@ def test_water_that_starts_as_a_lattice_round_free_ends_comes_to_rest(given, sec
 @pytest.mark.parametrize("points", [((-0.1, 0.0), (0.05, 0.2)), ((-0.09, 0.08), (0.03, 0.24))])
 @pytest.mark.slow
 def test_water_packed_beside_a_slanted_plate_stays_still(points):
-    """Within 8 s, r.m.s., to 0.02 √(g Δx), the speed of a fall by Δx/5000: a lattice there stirs to six times of it."""
+    """Within 8 s, r.m.s., to 0.02 √(g Δx), the speed of a fall by Δx/5000; a lattice stirs to two to seven times it."""
     parts = (Body(points),)
     scene = still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, alpha=0.02)
     drops = at_rest(scene.outline, DEPTH, scene.water, GRAVITY, parts, scene.outline)[None]
