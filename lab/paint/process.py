@@ -80,14 +80,35 @@ class Painter:
         heard.put((self, None))
 
 
+class Ending:
+    """Raises KeyboardInterrupt at the first signal, and again with each picture.
+
+    Python drops what is raised while it frees an object. Without the second, such a process would paint on.
+    """
+
+    def __init__(self) -> None:
+        self._asked = False
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._receive)
+
+    def _receive(self, *_: object) -> None:
+        self._asked = True
+        self.heed()
+
+    def heed(self) -> None:
+        """Raise KeyboardInterrupt if a signal has come."""
+        if self._asked:
+            raise KeyboardInterrupt
+
+
 def serve(cores: int) -> None:
     """Paint what is asked for on the standard input, until it ends."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # what libraries print does not get among the answers
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+    ending = Ending()
 
     def answer(**words: object) -> None:
+        ending.heed()
         print(json.dumps(words), file=answers, flush=True)
 
     try:

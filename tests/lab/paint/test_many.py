@@ -2,6 +2,7 @@
 
 import os
 import signal
+import weakref
 
 import imageio_ffmpeg
 import numpy as np
@@ -13,7 +14,7 @@ from lab.base.progress import Progress
 from lab.paint import many
 from lab.paint.encoder import join_videos, says
 from lab.paint.many import Job, find_recordings, paint_all, plan
-from lab.paint.process import Painter
+from lab.paint.process import Ending, Painter
 from lab.paint.reel.batches import batches_for, join_folders, paint_batches
 from lab.paint.video import is_made, made_with, render_recording
 from tests.oracles.synthetic import frame, recorder, sample
@@ -146,6 +147,22 @@ def test_an_interrupt_ends_the_painters_and_leaves_no_torn_video(tmp_path, monke
     for pid in pids:
         with pytest.raises(ProcessLookupError):
             os.kill(pid, 0)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_a_signal_is_heeded_though_it_came_while_python_freed_an_object():
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        ending, thing = Ending(), {1}
+        ending.heed()
+        seen = weakref.ref(thing, lambda _: os.kill(os.getpid(), signal.SIGTERM))
+        del thing
+        assert seen() is None
+        with pytest.raises(KeyboardInterrupt):
+            ending.heed()
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def test_batches_join_to_the_pictures_of_one_process(tmp_path):
