@@ -16,4 +16,4 @@ def cost(label: str, one: Outcome) -> list[str]:
         return [label, "0", "none", "none", wall]
     steps = one.cost["grain_steps"] / particles
     mean = 1e6 * float(recording.series["time"][-1]) / steps
-    return [label, f"{particles}", f"{steps:.0f}", f"{mean:.0f} µs", wall]
+    return [label, f"{particles}", f"{steps:.0f}", f"{mean:.3g} µs", wall]

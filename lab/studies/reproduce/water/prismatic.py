@@ -31,6 +31,7 @@ ROOF = 210.0  # mm
 UPPER = ("P2", "P3")  # gauges of the upper chamber
 DRY = "dry"
 THIRTY = 30.0  # s of motion
+HOURLY = 36000.0  # s from which a duration is told in hours
 HOURS = {False: 9.0, True: 81.0}  # that these took the source in the plane with water alone, and with air
 FALLS = "it falls with the spacing, as the source's does from 119 to 57 Pa"
 RISES = "it falls as sound gets faster: of four speeds the highest is best"
@@ -188,7 +189,8 @@ def thirty_seconds(found: Found) -> Told:
     cells = []
     for label, one in runs.items():
         whole = THIRTY * one.cost["seconds"]["run"] / float(one.recording.series["time"][-1])
-        cells.append([*cost(label, one), f"{whole / 60.0:.0f} min", f"{3600.0 * hours / whole:.1f}"])
+        told = f"{whole / 60.0:.0f} min" if whole < HOURLY else f"{whole / 3600.0:.0f} h"
+        cells.append([*cost(label, one), told, f"{3600.0 * hours / whole:.2g}"])
     return Told([], None, [[*COSTS, f"{THIRTY:.0f} s would take", f"the source's {hours:g} h over that"], *cells])
 
 
