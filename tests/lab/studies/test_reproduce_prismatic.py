@@ -151,4 +151,4 @@ def test_thirty_seconds_are_set_beside_the_sources_hours(preset, hours):
     one = ran(preset, time=np.array([0.0, 0.1]))
     one.cost["seconds"] = {"run": 12.0}
     cells = dict(zip(*prismatic.thirty_seconds({"ours": [one]}).table, strict=True))
-    assert cells["30 s would take"] == "60 min" and cells[f"the source's {hours:g} h over that"] == f"{hours:.1f}"
+    assert cells["30 s would take"] == "60 min" and cells[f"the source's {hours:g} h over that"] == f"{hours:g}"
