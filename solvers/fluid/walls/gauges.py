@@ -80,10 +80,14 @@ class Gauges:
 
     @ti.func
     def at(self, b, lane):
-        """The pressure (Pa) of a probe; of two phases the mean of what each shows, by its share of what is seen."""
+        """The pressure (Pa) of a probe; of two phases the water's where it is half of what is seen or more.
+
+        Else the mean of both, the water's by twice its share. A bubble of a particle or two holds the density at which
+        it was cut off (`Dispersed`), where the water's pressure would squeeze it to its own; so it is not shown.
+        """
         p = self.particles
         if ti.static(p.two):
-            share = p.share[b, lane]
+            share = ti.min(2.0 * p.share[b, lane], 1.0)
             return share * p.pressure[b, lane] + (1.0 - share) * p.pressure_of_air[b, lane]
         else:
             return p.pressure[b, lane]

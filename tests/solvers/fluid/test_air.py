@@ -129,6 +129,23 @@ def test_a_gauge_at_the_surface_does_not_show_the_background(pool):
     assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
 
 
+def test_a_gauge_with_a_bubble_before_it_shows_the_waters_pressure(pool):
+    """A particle of air on the floor keeps its density of outside: it bears nothing of what the water about it has."""
+    made = scene(background=40.0)
+    corner = np.array([0.5 * WIDTH, 0.0])
+    made.drops[0, np.linalg.norm(made.drops[0, :, :2] - corner, axis=1).argmin(), [GAS, EXCESS]] = 1.0, 0.0
+    made.drops = made.drops[:, np.argsort(made.drops[0, :, GAS], kind="stable")]
+    run, shown, about = again(pool, made), [], []
+    for _ in range(10):
+        run.advance(20)
+        shown.append(run.observe()["gauge_pressure"][0, 0])
+        state = run.snapshot()
+        place, pressure = state["water_place"][0], state["water_pressure"][0]
+        near = np.linalg.norm(place - corner, axis=1) < 2.0 * run.scene.water.spacing
+        about.append((pressure + 1000.0 * GRAVITY * place[:, 1])[near].mean())
+    assert np.mean(shown) == pytest.approx(np.mean(about), rel=0.1)
+
+
 def stirred(step: float | None = None, **of_air) -> Scene:
     """Both phases displaced and set in motion at random, the air slower than the water's sound, with drops in it."""
     made = scene(air={"sound_speed": 9.0, "alpha": 0.03} | of_air, background=60.0, step=step)
