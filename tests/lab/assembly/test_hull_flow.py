@@ -73,7 +73,7 @@ def test_hemisphere_is_that_of_hulme(library):
     that flat panels cut off, 1.1 %.
     """
     mass, number = WATER.density * 2.0 / 3.0 * pi * RADIUS**3, np.array([0.5, 1.0])
-    flow = Flow(hull_mesh(hemisphere(41, 80), RADIUS, 0.05), 0.0, WATER)
+    flow = Flow(hull_mesh(hemisphere(41, 80), RADIUS, 0.05, FEW), 0.0, WATER)
     table = flow.table(np.sqrt(number * WATER.gravity / RADIUS))
     assert table.added_mass[:, 1, 1] / mass == pytest.approx([0.6439, 0.5740], rel=0.02)
     assert table.damping[:, 1, 1] / mass / table.frequency == pytest.approx([0.0987, 0.3535], rel=0.03)
@@ -116,14 +116,14 @@ def test_roll_of_a_round_hull_is_right_beside_irregular_frequencies(library):
     A box of her length L, breadth B and draught T has its first standing wave at ω² = g k coth kT, k² = π²/L² + π²/B².
     """
     given = load("ship/anti-roll-tank").resolved.ship
-    flow, unit = of_anti_roll_tank(FEW)
+    flow, unit = of_anti_roll_tank(BETWEEN)
     depth = pi * given.draught * np.hypot(1.0 / given.length, 1.0 / np.ptp(given.corners[:, 0]))
     assert np.sqrt(depth / np.tanh(depth)) == pytest.approx(1.15, abs=0.002)
-    near = flow.table([1.1 * unit]).damping[0].diagonal()
+    table = flow.table([1.1 * unit, 1.15 * unit])
+    near = table.damping[0].diagonal()
     assert radiated(flow, 1.1 * unit)[1:4] == pytest.approx(near[1:4], rel=0.04)
-    table = flow.table([1.15 * unit])
-    miss = np.abs(table.haskind[0] - table.excitation[0]) / np.abs(table.excitation[0])
-    assert miss[1:4].max() < 0.04
+    miss = np.abs(table.haskind[1] - table.excitation[1]) / np.abs(table.excitation[1])
+    assert miss[1:4].max() < 0.03
 
 
 @pytest.mark.slow
