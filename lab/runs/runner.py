@@ -61,6 +61,7 @@ def run_preset(
     loaded = load(name, overrides)
     folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
     with Progress(quiet) as progress, hint(folder), _second_process(video, beside) as beside:
+        progress.say(f"{loaded.name}: {loaded.resolved.title}")  # at once: what follows may take seconds
         with progress.costs.of("settle"):
             run = prepare(loaded, folder)
         with only_one(folder):

@@ -13,14 +13,14 @@ import textwrap
 from functools import cache
 from types import SimpleNamespace
 
-from taichi.lang import impl, kernel_impl
+from taichi.lang import impl, kernel_impl, snode
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
 
 def remember() -> None:
     """Have Taichi look up each source once, and tell of an expression its file and line alone, of a field nothing."""
     ASTTransformerContext.get_pos_info = _place
-    impl.get_traceback = _nowhere
+    impl.get_traceback = snode.get_traceback = _nowhere
     kernel_impl._inside_class = _inside_class
     kernel_impl.textwrap = SimpleNamespace(fill=cache(textwrap.fill), dedent=cache(textwrap.dedent))
     for name in ("getsourcefile", "getsourcelines"):

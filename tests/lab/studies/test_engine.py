@@ -130,3 +130,15 @@ def test_a_processor_is_told_with_its_generation(family, model, name, tmp_path):
     core = f"processor : 0\ncpu family : {family}\nmodel : {model}\nmodel name : AMD EPYC\nflags : fpu\n\n"
     (tmp_path / "cpuinfo").write_text(core + core.replace(family, "1"))
     assert processor(tmp_path / "cpuinfo") == ("AMD EPYC" if name is None else f"AMD EPYC, {name}")
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (Made("0.2.0", "2026-11-23", "AMD EPYC, Zen 4"), "version 0.2.0, 2026-11-23, AMD EPYC, Zen 4"),
+        (Made("0.2.0", "2026-11-23"), "version 0.2.0, 2026-11-23, processor not recorded"),
+        (Made("0.1.0"), "version 0.1.0, date and processor not recorded"),
+    ],
+)
+def test_what_made_a_result_says_what_was_not_kept_of_it(made, said):
+    assert made.words == said and said.startswith(made.when) and "processor" not in made.when

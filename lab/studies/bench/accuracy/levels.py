@@ -12,7 +12,7 @@ FEW = 6  # beds at the full stiffness
 REASONS = {
     "integrator: Verlet": """At the derived step it errs as little in a collision as any scheme here, and less than
         Gear's in a shaken bed: contacts that open and close in mid-step hold a scheme of the fifth order to the first,
-        and a step of it costs nearly two of Verlet's. The source's scheme is not worth it.""",
+        and two steps of it cost three of Verlet's. The source's scheme is not worth it.""",
     "step: derived from 0.1 % in the restitution": """Twice the step errs four times as much; beds differ among each
         other by far more than either, which is why draft takes longer steps.""",
     "stiffness: a hundredth of the material's": """The softest scale whose angles and responses cannot be told from
