@@ -47,7 +47,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     for count, levels in usual.items():
         place = count, errors["verlet"][steps.index(count)]
         axes.plot(*place, "o", markersize=11, fillstyle="none", color="k")
-        axes.annotate(levels, place, (6, 8), textcoords="offset points")
+        axes.annotate(levels, place, (-6, -14), textcoords="offset points", ha="right")
     axes.set(xlabel="cost: steps a collision × cost of a step", ylabel="error of the restitution")
     axes.legend()
     page.figure("collisions", figure, "Error of the restitution against cost by integrator")

@@ -50,7 +50,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     for share, name in ((DRAFT, "draft"), (1.0, "standard")):
         usual = 1.0 / share, errors["verlet"][steps.index(share)]
         axes.plot(*usual, "o", markersize=11, fillstyle="none", color="k")
-        axes.annotate(name, usual, (6, 8), textcoords="offset points")
+        axes.annotate(name, usual, (-6, -14), textcoords="offset points", ha="right")
     axes.set(xlabel="cost (standard = 1)", ylabel="distance from the reference (d)")
     axes.legend()
     page.figure("shaken", figure, "Error of a shaken bed against cost by integrator")
