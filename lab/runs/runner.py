@@ -61,9 +61,9 @@ def run_preset(
     loaded = load(name, overrides)
     folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
     with Progress(quiet) as progress, hint(folder), _second_process(video, beside) as beside:
-        progress.say(f"{loaded.name}: {loaded.resolved.title}")  # at once: what follows may take seconds
         with progress.costs.of("settle"):
             run = prepare(loaded, folder)
+        progress.say(f"{loaded.name}: {loaded.resolved.title}")  # nothing is refused now, and what follows may take long
         with only_one(folder):
             run.make_recording()
             return _complete(run, None, progress, plots, video, beside)
