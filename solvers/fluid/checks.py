@@ -81,6 +81,23 @@ def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarr
     return rows["water_total"] + taken - rows["water_work"] - start
 
 
+def refuse_reduced(scene) -> None:
+    """Raise Unavailable, one sentence, for a `solvers.scene.Scene` in which pressures cannot be reduced."""
+    water, air = scene.water, scene.water.air
+    if air is None or air.reduced is None:
+        return
+    beside = {
+        "parts": bool(scene.parts),
+        "force gauges": bool(water.edges),
+        "air.vent_area": air.vent > 0.0,
+        "air.stiff_from": air.stiff_from > 0.0,
+        'air.interface = "cohesion"': air.cohesion > 0.0,
+    }
+    for name, there in beside.items():
+        if there:
+            raise Unavailable(f"air.reduced: does not go with {name}; leave out one of the two.")
+
+
 def refuse_scene(fills: Sequence[int], parts: int, grains: bool) -> None:
     """Raise Unavailable, one sentence, for a scene in which water cannot be computed.
 
