@@ -223,7 +223,9 @@ def resolved_numbers(preset: object) -> dict:
 
 
 def _grains(preset: object) -> dict:
-    """The grains; where a file lists them, all else is as if it were not said."""
+    """The grains, if there are any; where a file lists them, all else is as if it were not said."""
+    if preset.grains is None:
+        return {}
     grains, own = preset.grains, {"diameter": preset.mean_diameter, "listed": preset.grains.listed}
     if grains.listed:
         unsaid = asdict(replace(type(grains)(), reuse_bed=grains.reuse_bed))
