@@ -14,10 +14,13 @@ from glob import glob
 from io import StringIO
 from weakref import WeakSet
 
-from solvers.machine import address_space, compiling, kernel_cache, loading, memory, sources
-from solvers.machine.errors import Unavailable
+from solvers.machine import sources  # first, since it loads Taichi faster
 
-ti = loading.taichi
+# isort: split
+import taichi as ti
+
+from solvers.machine import address_space, compiling, kernel_cache, memory
+from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
 KERNELS = 256 * 2**20  # bytes of compiled kernels kept; one of water takes 2 MB, and Taichi's 100 MiB are soon full

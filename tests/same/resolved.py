@@ -213,7 +213,7 @@ def resolved_numbers(preset: object) -> dict:
     table["tank"] = {"outline": tank.corners, "open_edges": tank.open_edges}
     table["tank"] |= {"roughness": tank.roughness, "thickness": tank.thickness}
     table["grains"] = _grains(preset)
-    table["wall"] = asdict(preset.wall_material)
+    table["wall"] = asdict(preset.wall_material) if preset.grains else {}
     table["kinds"] = {name: {"share": kind.share, **asdict(preset.others[name])} for name, kind in preset.kinds.items()}
     table["shapes"] = {name: asdict(shape) for name, shape in preset.shape_classes.items()}
     table["contact"]["stiffness_scale"] = preset.stiffness_scale

@@ -116,9 +116,7 @@ def test_a_file_that_holds_no_results_is_one_sentence(text, tmp_path):
         Kept(tmp_path / "kept.json", "", None)
 
 
-def test_what_is_not_known_of_a_result_is_left_out_of_its_words():
-    assert Made("0.1.0").words == "version 0.1.0"
-    assert Made("0.2.0", "2026-11-23", "AMD EPYC").words == "version 0.2.0, 2026-11-23, AMD EPYC"
+def test_numbers_that_json_lacks_are_none():
     assert plain({"a": (1.0, np.inf, np.int64(3))}) == {"a": [1.0, None, 3]}
 
 
