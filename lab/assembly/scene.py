@@ -5,6 +5,7 @@ from math import ceil
 
 import numpy as np
 
+from lab.assembly.collisions import known_collisions
 from lab.assembly.grains import check_softness, grain_count, grains_of
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
@@ -24,6 +25,7 @@ LONGEST_STRIDE = 2
 LARGEST_POWER = 5  # of two: of more base steps strides need not be powers of two (`solvers.time.sequence.BAR`)
 
 
+@known_collisions()
 def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene, np.ndarray]:
     """The scene of all repeats and the grains' starting positions (W, n, 2) m; repeat w has the seed run.seed + w.
 

@@ -91,7 +91,31 @@ TYPOGRAPHY = str.maketrans({"\N{MINUS SIGN}": "-", "²": "^2", "³": "^3"})
 LONGEST = 100  # characters of a quantity
 MOST_FACTORS = 1000  # kept, of units as they are written
 
-_factors: dict[tuple[str, str], float] = {}  # from units as they are written to SI, since pint takes long over each
+# From units as they are written to SI. Pint takes long to import and over each unit, so those of most presets are here;
+# a test asks it for the same.
+USUAL = {
+    ("", "1"): 1.0,
+    ("%", "1"): 0.01,
+    ("mm", "m"): 1e-3,
+    ("cm", "m"): 1e-2,
+    ("nm", "m"): 1e-9,
+    ("km", "m"): 1e3,
+    ("mm^3", "m^3"): 1e-9,
+    ("mm/s", "m/s"): 1e-3,
+    ("ms", "s"): 1e-3,
+    ("min", "s"): 60.0,
+    ("deg", "rad"): 0.017453292519943295,
+    ("deg/s", "rad/s"): 0.017453292519943295,
+    ("kHz", "Hz"): 1e3,
+    ("g", "kg"): 1e-3,
+    ("kN", "N"): 1e3,
+    ("N/m^2", "Pa"): 1.0,
+    ("kPa", "Pa"): 1e3,
+    ("MPa", "Pa"): 1e6,
+    ("GPa", "Pa"): 1e9,
+    ("m^3/t", "m^3/kg"): 1e-3,
+}
+_factors: dict[tuple[str, str], float] = dict(USUAL)
 QUOTED = 40  # characters of a user's text that an error quotes
 LONGEST_PATH = 100  # characters of a path that an error quotes
 
@@ -187,6 +211,8 @@ def _split(text: str, symbol: str) -> tuple[float, str]:
 
 def _factor(unit: str, value: str, symbol: str) -> float:
     """The factor from `unit` to `symbol`; `value` is the text that errors quote."""
+    if unit == symbol != "1":
+        return 1.0
     if (unit, symbol) in _factors:
         return _factors[unit, symbol]
     if not unit and symbol != "1":

@@ -30,8 +30,15 @@ class Made:
 
     @property
     def words(self) -> str:
-        """For a reader: "version 0.2.0, 2026-11-23, AMD EPYC"."""
-        return ", ".join([f"version {self.version}", *filter(None, (self.date, self.processor))])
+        """For a reader: "version 0.2.0, 2026-11-23, AMD EPYC, Zen 4"; what was not kept is said."""
+        kept = {"date": self.date, "processor": self.processor}
+        lacking = " and ".join(name for name, value in kept.items() if not value)
+        return ", ".join([self.when, *filter(None, [self.processor, lacking and f"{lacking} not recorded"])])
+
+    @property
+    def when(self) -> str:
+        """Without the processor: "version 0.2.0, 2026-11-23"."""
+        return ", ".join([f"version {self.version}", *filter(None, [self.date])])
 
 
 def processor(listed: Path = Path("/proc/cpuinfo")) -> str:

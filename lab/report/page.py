@@ -17,6 +17,9 @@ from matplotlib.figure import Figure
 from lab.base.text import one_line
 from lab.report.plots import STYLE
 
+# Of a program that did not run a page says so. What it wrote is for those who run it; the JSON beside the page has it.
+STOPPED = re.compile(r"^That could not be run here: (?P<name>[^:]+) stopped: .+$", re.DOTALL)
+NOT_MEASURED = r"Not measured: \g<name> did not run here. What it wrote is in the JSON file beside this page."
 TEMPLATES = Path(__file__).with_name("templates")
 
 
@@ -82,6 +85,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     found.filters["cell"] = _cell
+    found.filters["paragraph"] = lambda text: STOPPED.sub(NOT_MEASURED, text)
     found.filters["line"] = lambda text: " ".join(str(text).split())
     return found
 

@@ -111,6 +111,22 @@ class Census:
             "air_excess": sums["air_excess"],
         }
 
+    def buoyed(self, sums: dict[str, np.ndarray], down: np.ndarray) -> np.ndarray | float:
+        """Σ ρ_a m_i/ρ_0i r_i·`down` (W,) kg m: times g, what `Reduced` adds to the potential energy; 0 without."""
+        if not self.constants.modified:
+            return 0.0
+        share = self.constants.numbers["buoyed"]
+        of_air = np.stack([sums["air_y"], sums["air_z"]], axis=1)
+        of_all = np.stack([sums["moment_y"], sums["moment_z"]], axis=1)
+        return ((share * (of_all - of_air) + of_air) * down).sum(axis=1)
+
+    def whole(self, pressure: np.ndarray, place: list[np.ndarray]) -> np.ndarray:
+        """The pressures (W, n) Pa at `place` (y and z) where these are found, which may be reduced ones (`Reduced`)."""
+        if not self.constants.modified:
+            return pressure
+        pull = np.stack([field.to_numpy() for field in self.now[3:5]], axis=1)
+        return pressure + self.constants.reduced.head(self.constants.numbers, pull, np.stack(place, axis=-1))
+
     @ti.kernel
     def count(self, time: ti.f64):
         """Fill the sums and the level gauges."""
@@ -176,7 +192,7 @@ class Census:
                     is_water = p.gas_at(b, lane) < 0.5
                     if ti.static(p.two):  # noqa: SIM102 (compiled only where there is air)
                         if not is_water:
-                            self.add_air(sums, [m, s], r, v)
+                            self.add_air(sums, [m, s], r, v, w)
                     if is_water:
                         sums[self.at.elastic] += m * sound * c.state.energy(s)
                         sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
@@ -189,7 +205,7 @@ class Census:
             self.sums[k][w, chunk] = sums[k]
 
     @ti.func
-    def add_air(self, sums: ti.template(), held: ti.template(), r: ti.template(), v: ti.template()):
+    def add_air(self, sums: ti.template(), held: ti.template(), r: ti.template(), v: ti.template(), w):
         """Add a particle of air, of the mass (kg/m) and excess of density `held`, at r (m) and v (m/s) in the tank."""
         c, m, s = self.constants, held[0], held[1]
         stiffness = ti.cast(c.get("air_stiffness"), self.exact)
@@ -205,6 +221,8 @@ class Census:
         sums[self.at.air_flowing] += 0.5 * m * dot(v, v)
         sums[self.at.air_volume] += volume
         sums[self.at.air_pressed] += volume * stiffness * c.gas.share(s)
+        if ti.static(c.modified):
+            sums[self.at.air_pressed] += volume * c.reduced.above(c, [self.now[3][w], self.now[4][w]], r)
         sums[self.at.air_excess] = ti.max(sums[self.at.air_excess], ti.abs(s))
 
     @ti.func
@@ -230,10 +248,14 @@ class Census:
     @ti.func
     def velocity_now(self, w, b, lane):
         """Velocity (m/s) of a particle over the earth now, in the tank's axes: that kept, and half a kick."""
-        p, half = self.particles, self.behind[w]
+        p, c, half = self.particles, self.constants, self.behind[w]
+        pull = [self.now[3 + a][w] for a in ti.static(range(p.axes))]
+        if ti.static(c.modified):
+            for a in ti.static(range(p.axes)):
+                pull[a] *= ti.cast(c.reduced.sinking(c, p.gas_at(b, lane)), self.exact)
         return [
             ti.cast(p.velocity[a][b, lane], self.exact)
-            + half * (ti.cast(p.acceleration[a][b, lane], self.exact) + self.now[3 + a][w])
+            + half * (ti.cast(p.acceleration[a][b, lane], self.exact) + pull[a])
             for a in ti.static(range(p.axes))
         ]
 
@@ -258,11 +280,17 @@ class Census:
         t = 1.0 - ti.max(0.0, ti.min(1.0, x))
         return 0.5 - t * t * t * (1.0 - 0.5 * t)
 
-    def relative(self, time: float, place: np.ndarray, velocity: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """Velocities (W, n, 2) m/s relative to the tank at `time` (s), from those kept and the last accelerations."""
+    def relative(self, time: float, place, velocity, push, gas: np.ndarray) -> np.ndarray:
+        """Velocities (W, n, 2) m/s relative to the tank at `time` (s), from those kept and the last accelerations.
+
+        Of each two (W, n) along y and z; `gas` (W, n) is 1 for air.
+        """
         self.note(time)
         tank_y, tank_z, rate, pull_y, pull_z, _ = (field.to_numpy()[:, None] for field in self.now)
         half = self.behind.to_numpy()[:, None]
+        if self.constants.modified:
+            sinks = (1.0 - gas) * (1.0 - self.constants.numbers["buoyed"])
+            pull_y, pull_z = pull_y * sinks, pull_z * sinks
         return np.stack(
             [
                 velocity[0] + half * (push[0] + pull_y) - tank_y + rate * place[1],

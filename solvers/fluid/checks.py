@@ -18,7 +18,7 @@ def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
     """What `refuse_state` asks of the particles in a world of a `solvers.fluid.matter.WaterMatter` at `time` (s)."""
     p = matter.particles
     found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
-    velocity = matter.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
+    velocity = matter.census.relative(time, found[0:2], found[2:4], found[4:6], matter.gas)[world]
     place, speed = np.stack(found[0:2], axis=-1)[world], np.linalg.norm(velocity, axis=1)
     return {
         "place": place,
@@ -79,6 +79,23 @@ def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarr
     """Energy (W,) J that nothing accounts for: gain, losses and what dummies hold, less the work of the walls."""
     taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_held"]
     return rows["water_total"] + taken - rows["water_work"] - start
+
+
+def refuse_reduced(scene) -> None:
+    """Raise Unavailable, one sentence, for a `solvers.scene.Scene` in which pressures cannot be reduced."""
+    water, air = scene.water, scene.water.air
+    if air is None or air.reduced is None:
+        return
+    beside = {
+        "parts": bool(scene.parts),
+        "force gauges": bool(water.edges),
+        "air.vent_area": air.vent > 0.0,
+        "air.stiff_from": air.stiff_from > 0.0,
+        'air.interface = "cohesion"': air.cohesion > 0.0,
+    }
+    for name, there in beside.items():
+        if there:
+            raise Unavailable(f"air.reduced: does not go with {name}; leave out one of the two.")
 
 
 def refuse_scene(fills: Sequence[int], parts: int, grains: bool) -> None:

@@ -9,6 +9,7 @@ from solvers.fluid.kernels import KERNELS
 from solvers.fluid.phases.adiabatic import Adiabatic
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.phases.numbers import of_air
+from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
 from solvers.fluid.surface.consistency import Consistency
@@ -39,6 +40,7 @@ class Constants:
         self.two, self.gas, self.cohesion = water.air is not None, Adiabatic(), Cohesion()
         self.tense = self.two and water.air.tension > 0.0
         self.coheres = self.two and water.air.cohesion > 0.0
+        self.reduced, self.modified = Reduced(), self.two and water.air.reduced is not None
         self.accounted = not (self.tense or self.coheres)  # for whether all energy has a name
         self.pulled = water.pull is not None
         self.numbers = numbers = self.numbers_of(water, gravity)

@@ -127,8 +127,7 @@ class Forces:
     def push_block(self, u, b, listed, kick):
         """As `push`, for a block; returns its force (y, z; N/m) and moment (N) on the walls, and the powers (W/m) that
         viscosity and dummies take."""
-        p, c = self.particles, self.constants
-        lists = self.lists
+        p, c, lists = self.particles, self.constants, self.lists
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
@@ -231,7 +230,7 @@ class Forces:
             acceleration = lightness * (push[a] + strength * drag[a] + wall[a])
             p.store(p.acceleration[a], b, acceleration)
             # Velocities are half a kick behind the places at which the dummies push.
-            gain = acceleration + p.filled(b) * ti.cast(self.poses.felt[a][self.units.world(u)], p.real)
+            gain = acceleration + self.beside.weight(u, b, a)
             held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
             lost = lost - drag[a] * ((0.5 * kick) * gain)
         if ti.static(self.poses.moving and not self.bodies.moving):
@@ -245,7 +244,8 @@ class Forces:
         if ti.static(self.fullness.acts):
             self.fullness.note(b, yy + zz, fill)
         volume = p.load(p.volume, b) * factor
-        total = self.beside.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
+        force = self.beside.borne(u, b, [volume * wall[a] for a in ti.static(range(p.axes))])
+        total = self.beside.on_walls(b, origin, own, force)
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)
         return total

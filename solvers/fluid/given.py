@@ -46,7 +46,8 @@ class Air:
     `soft_speed`; `alpha` the strength of its artificial viscosity or `kinematic` ν (m²/s) that of laminar flow,
     `tension` (N/m) of the surface between the phases;
     `vent`: the area (m²) of openings to the outside, a metre of thickness; `interface`: the name of what acts between
-    the phases, and `cohesion` the pressure X (Pa) of that which has one.
+    the phases, and `cohesion` the pressure X (Pa) of that which has one; `reduced`: the height (m) of the surface at
+    rest, if pressures are over those of this fluid at rest (`solvers.fluid.phases.reduced`), else None.
     """
 
     density: float = 1.2
@@ -59,6 +60,7 @@ class Air:
     cohesion: float = 0.0
     soft_speed: float = 0.0
     stiff_from: float = 0.0
+    reduced: float | None = None
 
 
 @dataclass(frozen=True)

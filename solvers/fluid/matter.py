@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census, Pool
-from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state, residual, suspects
+from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scene, refuse_state, residual, suspects
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
@@ -81,7 +81,7 @@ class WaterMatter(Matter):
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness, pace)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
-        self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
+        self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
         self.edges = Edges(arrays, medium, self.extrapolation, water.edges, behind, dummy, scene.tanks, pool.first)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
@@ -219,6 +219,7 @@ class WaterMatter(Matter):
         now = [field.to_numpy() for field in self.census.now]
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
+        potential += self.scene.gravity * self.census.buoyed(sums, down)
         viscous, held, work = self.forces.counted(self.census.behind.to_numpy())
         diffusive = self.continuity.lost.to_numpy().reshape(len(mass), -1).sum(axis=1)
         rows = {
@@ -259,8 +260,8 @@ class WaterMatter(Matter):
         found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
         told = {
             "place": np.stack(found[0:2], axis=-1),
-            "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
-            "pressure": self.constants.pressures(found[6], self.gas),
+            "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6], self.gas),
+            "pressure": self.census.whole(self.constants.pressures(found[6], self.gas), found[0:2]),
         }
         rows = {f"{phase}_{name}": told[name][:, part] for phase, part in self.phases.items() for name in told}
         return rows | self.bodies.places(time)
@@ -294,4 +295,5 @@ def make_water(scene, setting: Setting) -> WaterMatter | None:
     if scene.water is None or scene.water.model != "sph":
         return None
     refuse_scene(scene.fills, len(scene.parts), bool(scene.radius.size))
+    refuse_reduced(scene)
     return WaterMatter(scene, setting)

@@ -49,8 +49,11 @@ class Mover:
         farthest = p.zeros()
         for b in range(first, end):
             filled = p.filled(b)
+            weighs = filled
+            if ti.static(c.modified):
+                weighs = filled * c.reduced.sinking(c, p.gases(b))
             for a in ti.static(range(p.axes)):
-                push = p.load(p.acceleration[a], b) + filled * pull[a]
+                push = p.load(p.acceleration[a], b) + weighs * pull[a]
                 if ti.static(c.pulled):
                     centre = ti.cast(c.get("pull_y" if a == 0 else "pull_z"), p.where)
                     push = push - (c.get("pull") * filled) * p.offset(b, centre, a)

@@ -1,6 +1,7 @@
 """Restitution of damped contacts as a function of damping, and the inverse. A contact ends when its force vanishes."""
 
-from functools import cache
+from collections.abc import Callable
+from functools import cache, wraps
 from math import acos, acosh, exp, log, sqrt
 
 # Powers of the overlap ξ to which the damping of a Hertz contact is proportional.
@@ -10,8 +11,22 @@ CONSTANT = 0.0  # a linear dashpot
 # the damping along the elastic collision; 1.15344 in Schwager and Pöschel (1998).
 FIRST_ORDER = {VISCOELASTIC: 1.15344, CONSTANT: 1.78781}
 
+# What has been solved, by the name of the function, its number and its power; what another process puts in is believed.
+solved: dict[tuple[str, float, float], float] = {}
 
-@cache
+
+def _solved_once(solve: Callable[[float, float], float]) -> Callable[..., float]:
+    @wraps(solve)
+    def once(number: float, power: float = VISCOELASTIC) -> float:
+        key = solve.__name__, float(number), power
+        if key not in solved:
+            solved[key] = solve(number, power)
+        return solved[key]
+
+    return once
+
+
+@_solved_once
 def restitution(damping: float, power: float = VISCOELASTIC) -> float:
     """Coefficient of restitution of a Hertz contact with a damping x proportional to ξ^power.
 
@@ -42,14 +57,14 @@ def restitution(damping: float, power: float = VISCOELASTIC) -> float:
     return -float(path.y[1, -1])
 
 
-@cache
+@_solved_once
 def damping_for(e: float, power: float = VISCOELASTIC) -> float:
     """The damping x of a Hertz contact that gives restitution e."""
     if e > 1.0 - 1e-4:
         return (1.0 - e) / FIRST_ORDER[power]
     from scipy.optimize import brentq
 
-    return brentq(lambda x: restitution(x, power) - e, 1e-6, 1e4, xtol=1e-9)
+    return brentq(lambda x: restitution.__wrapped__(x, power) - e, 1e-6, 1e4, xtol=1e-9)
 
 
 def dissipative_time_for(e: float, speed: float, stiffness: float, mass: float) -> float:

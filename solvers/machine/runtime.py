@@ -14,9 +14,12 @@ from glob import glob
 from io import StringIO
 from weakref import WeakSet
 
+from solvers.machine import sources  # first, since it loads Taichi faster
+
+# isort: split
 import taichi as ti
 
-from solvers.machine import address_space, compiling, kernel_cache, memory, sources
+from solvers.machine import address_space, compiling, kernel_cache, memory
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")

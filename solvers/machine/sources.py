@@ -7,20 +7,34 @@ function it goes through all modules to see whether it stands in a class: a quar
 start.
 """
 
+import inspect
 import linecache
 import sys
 import textwrap
 from functools import cache
-from types import SimpleNamespace
+from types import FrameType, SimpleNamespace
 
-from taichi.lang import impl, kernel_impl
-from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
+
+def _line_alone(frame: FrameType, context: int = 1) -> inspect.Traceback:
+    """`inspect.getframeinfo`, with the one line that runs, and without a search through all modules for its file."""
+    code = frame.f_code
+    line = linecache.getline(code.co_filename, frame.f_lineno)
+    return inspect.Traceback(code.co_filename, frame.f_lineno, code.co_name, [line] if line else None, 0)
+
+
+_usual = inspect.getframeinfo
+inspect.getframeinfo = _line_alone  # while Taichi is loaded, whose own functions are a hundred
+try:
+    from taichi.lang import impl, kernel_impl, snode
+    from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
+finally:
+    inspect.getframeinfo = _usual
 
 
 def remember() -> None:
     """Have Taichi look up each source once, and tell of an expression its file and line alone, of a field nothing."""
     ASTTransformerContext.get_pos_info = _place
-    impl.get_traceback = _nowhere
+    impl.get_traceback = snode.get_traceback = _nowhere
     kernel_impl._inside_class = _inside_class
     kernel_impl.textwrap = SimpleNamespace(fill=cache(textwrap.fill), dedent=cache(textwrap.dedent))
     for name in ("getsourcefile", "getsourcelines"):

@@ -241,25 +241,6 @@ def test_explain_gets_the_loaded_preset(monkeypatch):
     assert calls[0][0][0].resolved.run.seed == 5
 
 
-def test_help_and_list_need_no_slow_imports():
-    code = (
-        "import sys; from lab.cli import main\n"
-        "try: main(['list'])\n"
-        "except SystemExit: pass\n"
-        "sys.exit(any(m in sys.modules for m in ('taichi', 'matplotlib', 'pint', 'numpy')))"
-    )
-    root = Path(__file__).parents[2]
-    assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0
-
-
-def test_a_run_begins_without_imports_that_only_its_figures_need():
-    slow = ("scipy", "matplotlib", "PIL", "imageio_ffmpeg", "xarray", "jinja2")
-    code = f"import sys; from lab.runs.runner import run_preset; sys.exit(str([m for m in {slow} if m in sys.modules]))"
-    root = Path(__file__).parents[2]
-    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=False)
-    assert done.stderr.splitlines()[-1] == "[]"
-
-
 def test_render_of_several_exits_with_2_if_one_fails(monkeypatch, tmp_path):
     for name in ("a", "b"):
         (tmp_path / name).mkdir()

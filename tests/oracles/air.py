@@ -3,6 +3,7 @@
 import numpy as np
 
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
+from solvers.fluid.phases.dispersed import LIGHT
 from solvers.fluid.phases.interfaces import INTERFACES
 from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
@@ -61,6 +62,7 @@ class PlainBoth(PlainWater):
         self.strength = water.length * 2.0 * mu[:, None] * mu / (mu[:, None] + mu)
         self.other = self.gas[:, None] - self.gas
         self.lean = INTERFACES[air.interface].leans(water.density, air.density)[0]
+        self.weighs = np.ones(len(self.gas)) if air.reduced is None else of(1.0 - air.density / water.density, 0.0)
 
     def volume(self, mass, s):
         """V = m/ρ."""
@@ -71,7 +73,8 @@ class PlainBoth(PlainWater):
         of_air = self.density * self.sound**2 * ((1.0 + s) ** 1.4 - 1.0) / 1.4
         alone = np.where(self.gas > 0.5, of_air, self.density * self.sound**2 * s)
         whole = alone + self.water.background - self.cohesion * s * (2.0 + s)
-        return np.where((self.gas > 0.5) & (self.cohesion == 0.0), np.maximum(whole, 0.0), whole)
+        bounded = (self.gas > 0.5) & (self.cohesion == 0.0) & (self.water.air.density < LIGHT * self.water.density)
+        return np.where(bounded, np.maximum(whole, 0.0), whole)
 
     def extra(self, s):
         """What air feels besides, of each of its neighbours: 2 a ρ² (Mokos et al. 2015)."""
@@ -82,7 +85,7 @@ class PlainBoth(PlainWater):
         of, volume = self.gas == gas, self.volume(mass, s)
         apart, _, value, _ = self.between(self.wall, r)
         weight = (value * volume)[:, of]
-        lever = -(apart[:, of] @ self.gravity) * (mass / volume)[of] + self.pressure(s)[of]
+        lever = -(apart[:, of] @ self.gravity) * (self.weighs * mass / volume)[of] + self.pressure(s)[of]
         found = (weight * lever).sum(axis=1) / np.maximum(weight.sum(axis=1), 1e-30)
         return found if gas else np.maximum(found, 0.0)
 
@@ -108,7 +111,7 @@ class PlainBoth(PlainWater):
         pairs = (self.strength * pi - between) * volume[:, None] * volume
         force = (pairs[..., None] * gradient).sum(axis=1)
         to_wall, _, _, at_wall = self.between(r, self.wall)
-        heavier = pressure[:, None] + (mass / volume)[:, None] * (to_wall @ self.gravity)
+        heavier = pressure[:, None] + (self.weighs * mass / volume)[:, None] * (to_wall @ self.gravity)
         seen = np.where(self.gas[:, None] > 0.5, heavier, self.wall_pressure(r, mass, s, 0.0)[None])
         own = np.where(self.gas > 0.5, pressure, np.maximum(pressure, 0.0))
         own = own + self.extra(s)
@@ -173,3 +176,30 @@ class PlainBoth(PlainWater):
         evened = water.delta * water.length * self.sound * ((same * more * eta) @ volume)
         walled = walled - self.closing(r, u, s, mass, pressed)
         return evened - (1.0 + s) * flow, -(1.0 + s) * walled
+
+
+def held(run: Simulation) -> list[np.ndarray]:
+    """Places, velocities, s, masses, accelerations and slopes of all particles, by their numbers."""
+    p = run.water.particles
+    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.excess, p.mass, *p.acceleration, *p.slope)
+    pairs = [np.stack(pair, axis=-1)[0] for pair in ((y, z), (v, w), rest[0:2], rest[2:4])]
+    return [*pairs[:2], s[0], m[0], *pairs[2:]]
+
+
+def follows_double_sums(run: Simulation, steps: int = 7) -> None:
+    """Some steps, and one more beside plain numpy."""
+    plain, dt = PlainBoth(run.scene), run.dt
+    run.advance(steps)
+    r, u, s, m, *_ = held(run)
+    run.advance(1)
+    push, slope, _ = plain.push(r, u, s, m)
+    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if run.water.forces.fullness.acts else None
+    pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
+    u = u + dt * (push + plain.weighs[:, None] * plain.gravity)
+    middle = r + 0.5 * dt * u
+    s = plain.later(middle, u, s, m, slope, pressed, dt, mixed)
+    found = held(run)
+    np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
+    np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
+    np.testing.assert_allclose(found[2], s, atol=1e-9 * np.abs(s).max())
+    np.testing.assert_allclose(found[0], middle + 0.5 * dt * u, atol=1e-12)

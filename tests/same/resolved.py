@@ -213,7 +213,7 @@ def resolved_numbers(preset: object) -> dict:
     table["tank"] = {"outline": tank.corners, "open_edges": tank.open_edges}
     table["tank"] |= {"roughness": tank.roughness, "thickness": tank.thickness}
     table["grains"] = _grains(preset)
-    table["wall"] = asdict(preset.wall_material)
+    table["wall"] = asdict(preset.wall_material) if preset.grains else {}
     table["kinds"] = {name: {"share": kind.share, **asdict(preset.others[name])} for name, kind in preset.kinds.items()}
     table["shapes"] = {name: asdict(shape) for name, shape in preset.shape_classes.items()}
     table["contact"]["stiffness_scale"] = preset.stiffness_scale
@@ -223,7 +223,9 @@ def resolved_numbers(preset: object) -> dict:
 
 
 def _grains(preset: object) -> dict:
-    """The grains; where a file lists them, all else is as if it were not said."""
+    """The grains, if there are any; where a file lists them, all else is as if it were not said."""
+    if preset.grains is None:
+        return {}
     grains, own = preset.grains, {"diameter": preset.mean_diameter, "listed": preset.grains.listed}
     if grains.listed:
         unsaid = asdict(replace(type(grains)(), reuse_bed=grains.reuse_bed))

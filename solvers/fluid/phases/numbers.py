@@ -5,6 +5,7 @@ from dataclasses import replace
 from solvers.fluid.given import Water
 from solvers.fluid.phases.dispersed import ALONE, LIGHT
 from solvers.fluid.phases.interfaces import INTERFACES
+from solvers.fluid.phases.reduced import Reduced
 
 UNBOUNDED = 1e20  # Pa
 CONTRACTED = 0.6  # discharge coefficient of a sharp-edged opening
@@ -31,7 +32,8 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "air_spread": water.delta * water.length * air.sound_speed,
         "air_strength": strength,
         "both_strength": 2.0 * own * strength / max(own + strength, 1e-300),
-        "air_hydrostatic": gravity / air.sound_speed**2,
+        "hydrostatic": Reduced.weight(water, gravity) / water.sound_speed**2,
+        "air_hydrostatic": (gravity if air.reduced is None else 0.0) / air.sound_speed**2,
         "air_packed": ALONE,
         "least": 0.0 if air.density < LIGHT * water.density else -UNBOUNDED,  # Pa, with the background's
         "air_keeping": numbers["keeping"] * air.sound_speed / water.sound_speed,
@@ -42,4 +44,4 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "cohesion": air.cohesion,
         "vent": CONTRACTED * air.vent,
         "air_pace": FASTEST[0] * water.sound_speed / (FASTEST[1] * air.sound_speed),
-    }
+    } | Reduced.numbers(water)

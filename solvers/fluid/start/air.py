@@ -26,8 +26,11 @@ def excess_at_rest(height: np.ndarray, volume: np.ndarray, water: Water, gravity
     """As `hydrostatic_air`, of particles (n,) with volumes (m²); air that is soft at first has its mass when stiff.
 
     Soft air is lighter by its own weight. If it kept that, it would be under suction in a closed tank once it is
-    stiff; so its density is higher by as much everywhere, which lifts its pressure by half its weight at most.
+    stiff; so its density is higher by as much everywhere, which lifts its pressure by half its weight at most. Where
+    pressures are reduced (`Reduced`) there is no excess.
     """
+    if water.air.reduced is not None:
+        return np.zeros(len(height))
     soft = hydrostatic_air(height, gravity, water.softened.air.sound_speed)
     if water.softened is not water:
         soft += np.average(hydrostatic_air(height, gravity, water.air.sound_speed) - soft, weights=volume)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
+from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.lattice import lattice
 from solvers.fluid.start.packing import packed
 from solvers.fluid.start.plates import packed_beside
@@ -63,6 +64,7 @@ def at_rest(
         points, volume = STARTS[water.start](polygon, level, water)
     drops = np.zeros((len(points), 6))
     drops[:, [Y, Z]] = points
-    drops[:, EXCESS] = hydrostatic_excess(level - points[:, 1], gravity, water.sound_speed, water.state)
+    weight = Reduced.weight(water, gravity)
+    drops[:, EXCESS] = hydrostatic_excess(level - points[:, 1], weight, water.sound_speed, water.state)
     drops[:, VOLUME] = volume
     return drops

@@ -87,11 +87,15 @@ class Extrapolation:
             for a in ti.static(range(p.axes)):
                 lever[a] += massive * apart[a]
         pull = self.felt(w, b)
+        pull_of_air = self.of_air(w, pull)
         wet = (seen + airy) * c.get("value")
+        if ti.static(c.modified):
+            for a in ti.static(range(p.axes)):
+                pull[a] = pull[a] + c.get("buoyed") * (pull_of_air[a] - pull[a])
         if ti.static(p.two):
             pressure = ti.max((pressed + dot(pull, lever)) / ti.max(seen, 1e-30), 0.0)
             p.store(p.pressure, b, pressure)
-            p.store(p.pressure_of_air, b, (pressed_by_air + dot(pull, lever_of_air)) / ti.max(airy, 1e-30))
+            p.store(p.pressure_of_air, b, (pressed_by_air + dot(pull_of_air, lever_of_air)) / ti.max(airy, 1e-30))
             p.store(p.share, b, seen / ti.max(seen + airy, 1e-30))
         else:
             pressure = (pressed + dot(pull, lever)) / ti.max(seen, 1e-30)
@@ -122,6 +126,16 @@ class Extrapolation:
         if ti.static(self.bodies.moving):
             self.bodies.hold_back(w, b, felt)
         return felt
+
+    @ti.func
+    def of_air(self, w, felt: ti.template()):
+        """`felt`, less gravity where pressures are over those of the air at rest (`Reduced`)."""
+        p = self.particles
+        left = [felt[a] for a in ti.static(range(p.axes))]
+        if ti.static(self.constants.modified):
+            for a in ti.static(range(p.axes)):
+                left[a] = left[a] - ti.cast(self.poses.felt[a][w], p.real)
+        return left
 
     @ti.func
     def carry(self, u):

@@ -7,6 +7,7 @@ from solvers.fluid.constants import Constants
 from solvers.fluid.given import Gauge
 from solvers.fluid.state import Particles
 from solvers.machine.state import Axis, State, padded, roomy
+from solvers.motion.poses import Poses
 
 USUAL = 8  # gauges, and probes of each, for which there is room at least
 DRY = 0.5  # of what water can cover of a probe's kernel: half of it in a plane wall, a quarter in a corner
@@ -37,11 +38,13 @@ class Gauges:
         arrays: State,
         particles: Particles,
         constants: Constants,
+        poses: Poses,
         gauges: tuple[Gauge, ...],
         slots: list[np.ndarray],
         open_part: list[np.ndarray],
     ):
         self.particles, self.constants, self.count = particles, constants, len(gauges)
+        self.poses = poses
         own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", roomy(self.count, USUAL)))
         self.shown, self.peak = own.reals(each, "shown", "peak", kind=own.exact)
         if self.count:
@@ -71,12 +74,22 @@ class Gauges:
                     total += ti.cast(self.at(b, lane), p.exact)
                     if ti.static(self.constants.pressed):
                         total -= ti.cast(self.constants.get("background"), p.exact)
+                    if ti.static(self.constants.modified):
+                        total += self.head(w, b, lane)
             mean = total / (self.ends[gauge + 1] - self.ends[gauge])
             follows = ti.cast(1.0, p.exact)
             if self.response[gauge] > 0.0:
                 follows = 1.0 - ti.exp(0.0 - ti.cast(dt, p.exact) / self.response[gauge])
             self.shown[w, gauge] = self.shown[w, gauge] + follows * (mean - self.shown[w, gauge])
             self.peak[w, gauge] = ti.max(self.peak[w, gauge], self.shown[w, gauge])
+
+    @ti.func
+    def head(self, w, b, lane):
+        """What the pressure (Pa) of a probe is over that which is reduced, see `Reduced`."""
+        p, c = self.particles, self.constants
+        pull = [self.poses.felt[a][w] for a in ti.static(range(p.axes))]
+        place = [ti.cast(p.place[a][b, lane], p.exact) for a in ti.static(range(p.axes))]
+        return c.reduced.above(c, pull, place)
 
     @ti.func
     def at(self, b, lane):

@@ -41,7 +41,8 @@ class WallPush:
         squeezed = 1.0 + gas * p.load(p.excess, b)  # of air as heavy as before in less volume
         weighs = [p.zeros() for _ in ti.static(range(p.axes))]
         if ti.static(c.two):
-            felt = self.walls.felt(self.lists.units.world(u), b)
+            w = self.lists.units.world(u)
+            felt = self.walls.of_air(w, self.walls.felt(w, b))
             for a in ti.static(range(p.axes)):
                 weighs[a] += (gas * squeezed * c.get("air_density")) * felt[a]
         for k in range(ends[0], ends[1]):
@@ -113,6 +114,25 @@ class WallPush:
             return (1.0 - gas) * p.pressure[b, lane] + gas * pressure
         else:
             return p.pressure[b, lane]
+
+    @ti.func
+    def weight(self, u, b, axis: ti.template()):
+        """The weight per mass (m/s²) of a block along an axis, in the tank's axes."""
+        p, c = self.particles, self.constants
+        found = p.filled(b) * ti.cast(self.poses.felt[axis][self.lists.units.world(u)], p.real)
+        if ti.static(c.modified):
+            found *= c.reduced.sinking(c, p.gases(b))
+        return found
+
+    @ti.func
+    def borne(self, u, b, push: ti.template()):
+        """The walls' push on a block, less what its particles lack of their weight: the walls bear it (`Reduced`)."""
+        p, found = self.particles, [push[a] for a in ti.static(range(self.particles.axes))]
+        if ti.static(self.constants.modified):
+            for a in ti.static(range(p.axes)):
+                whole = p.filled(b) * ti.cast(self.poses.felt[a][self.lists.units.world(u)], p.real)
+                found[a] = found[a] - p.load(p.mass, b) * (whole - self.weight(u, b, a))
+        return found
 
     @ti.func
     def on_walls(self, b, origin: ti.template(), own: ti.template(), wall: ti.template()):

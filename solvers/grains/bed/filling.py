@@ -173,7 +173,10 @@ def clear_of_walls(
 
 
 def _inside(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
-    """Which points (n, 2) lie inside a polygon (m, 2)."""
-    from matplotlib.path import Path  # slow to import
-
-    return Path(polygon).contains_points(points)
+    """Which points (n, 2) lie inside a polygon (m, 2): a ray from there crosses its edges an odd number of times."""
+    y, z = points.T
+    odd = np.zeros(len(points), dtype=bool)
+    for (y0, z0), (y1, z1) in pairwise(np.vstack([polygon, polygon[:1]])):
+        passes = (z0 > z) != (z1 > z)
+        odd ^= passes & (((y1 - y0) * (z - z0) < (y - y0) * (z1 - z0)) == (z1 > z0))
+    return odd

@@ -176,3 +176,17 @@ def test_air_bears_suction_unless_the_preset_says_else():
     assert liquid(airy(air=False)).background == 0.0
     taut = airy(air__surface_tension="1 N/m")
     assert liquid(taut).background == pytest.approx(3.0 * 0.743 / liquid(taut).length, rel=1e-3)
+
+
+def test_pressures_over_those_of_a_heavy_fluid():
+    """Reduced, nothing hangs below the lid: the background bears less, and the upper fluid has no pressure at rest."""
+    heavy = {"tank__height": "300 mm", "air__density": "500 kg/m^3"}
+    whole, reduced = liquid(airy(**heavy)), airy(**heavy, air__reduced=True)
+    made = liquid(reduced)
+    assert made.air.reduced == pytest.approx(0.1) and whole.air.reduced is None
+    assert made.background == pytest.approx(
+        max(1000.0 * made.speed**2, 500.0 * (9.81 * made.length + made.speed**2)), rel=1e-6
+    )
+    assert made.background < whole.background
+    drops = build(reduced)[0].drops[0]
+    assert (drops[drops[:, GAS] > 0.5, EXCESS] == 0.0).all() and drops[:, EXCESS].max() > 0.0

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lab.base.errors import LabError
-from lab.preset.units import KINDS, parse, show
+from lab.preset import units
+from lab.preset.units import KINDS, USUAL, parse, show
 
 
 @pytest.mark.parametrize(
@@ -129,3 +130,9 @@ def test_near_quantities_give_only_lab_errors(text):
         assert math.isfinite(parse(text, "m/s"))
     except LabError as error:
         assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(("unit", "symbol"), USUAL)
+def test_the_factors_of_usual_units_are_those_that_pint_finds(unit, symbol, monkeypatch):
+    monkeypatch.setattr(units, "_factors", {})
+    assert units._factor(unit, unit, symbol) == USUAL[unit, symbol]

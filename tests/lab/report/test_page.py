@@ -32,6 +32,16 @@ def test_what_was_made_at_different_times_says_so_itself(tmp_path):
     assert text.startswith(top + "## ann\n\nMade by ann.\n\nIt is so.\n\n## bob\n\nIt is so.")
 
 
+def test_of_a_program_that_did_not_run_a_page_says_so_and_not_what_it_wrote(tmp_path):
+    page = Page(tmp_path, "trial")
+    page.say("That could not be run here: LAMMPS stopped: [mpiexec@vm] match_arg (/src/args.c:166): unrecognized")
+    page.say("That could not be run here: there is one core only.")
+    results = {"one": {"said": "Made by hand.", "blocks": page.blocks}}
+    text = write_sections(tmp_path / "trial.md", "A trial", results).read_text()
+    assert "Not measured: LAMMPS did not run here." in text and "mpiexec" not in text
+    assert "That could not be run here: there is one core only." in text
+
+
 def test_a_page_with_a_number_missing_is_none(tmp_path):
     with pytest.raises(UndefinedError):
         render(tmp_path / "page.md", "page.md.j2", title="A trial")

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from lab.base.errors import LabError
+from lab.preset.accuracy import LEVELS
 from lab.studies.bench.accuracy import BENCH
 from lab.studies.bench.accuracy.beds import Point, mean_and_interval
-from lab.studies.bench.accuracy.collisions import worst_errors
+from lab.studies.bench.accuracy.collisions import steps_of_levels, worst_errors
 from lab.studies.bench.accuracy.repeats import beds_for
 
 
@@ -29,6 +30,13 @@ def test_the_computed_number_of_beds_is_the_smallest_for_the_confidence():
 def test_the_restitution_of_verlet_is_of_second_order():
     coarse, fine = worst_errors("verlet", (40, 80))
     assert coarse / fine == pytest.approx(4.0, rel=0.3)
+
+
+@pytest.mark.slow
+def test_each_level_holds_its_error_at_the_steps_that_the_page_has_for_it():
+    steps = steps_of_levels()
+    for names, error in zip(steps.values(), worst_errors("verlet", list(steps)), strict=True):
+        assert all(error < LEVELS[name].restitution for name in names.split(" and "))
 
 
 @pytest.mark.slow

@@ -116,9 +116,7 @@ def test_a_file_that_holds_no_results_is_one_sentence(text, tmp_path):
         Kept(tmp_path / "kept.json", "", None)
 
 
-def test_what_is_not_known_of_a_result_is_left_out_of_its_words():
-    assert Made("0.1.0").words == "version 0.1.0"
-    assert Made("0.2.0", "2026-11-23", "AMD EPYC").words == "version 0.2.0, 2026-11-23, AMD EPYC"
+def test_numbers_that_json_lacks_are_none():
     assert plain({"a": (1.0, np.inf, np.int64(3))}) == {"a": [1.0, None, 3]}
 
 
@@ -130,3 +128,15 @@ def test_a_processor_is_told_with_its_generation(family, model, name, tmp_path):
     core = f"processor : 0\ncpu family : {family}\nmodel : {model}\nmodel name : AMD EPYC\nflags : fpu\n\n"
     (tmp_path / "cpuinfo").write_text(core + core.replace(family, "1"))
     assert processor(tmp_path / "cpuinfo") == ("AMD EPYC" if name is None else f"AMD EPYC, {name}")
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (Made("0.2.0", "2026-11-23", "AMD EPYC, Zen 4"), "version 0.2.0, 2026-11-23, AMD EPYC, Zen 4"),
+        (Made("0.2.0", "2026-11-23"), "version 0.2.0, 2026-11-23, processor not recorded"),
+        (Made("0.1.0"), "version 0.1.0, date and processor not recorded"),
+    ],
+)
+def test_what_made_a_result_says_what_was_not_kept_of_it(made, said):
+    assert made.words == said and said.startswith(made.when) and "processor" not in made.when

@@ -14,7 +14,7 @@ from solvers.fluid.viscosity import VISCOSITY
 from solvers.motion.harmonic import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from tests.oracles.air import PlainBoth, again, both, filled
+from tests.oracles.air import again, both, filled, follows_double_sums, held
 from tests.oracles.water import GRAVITY, box
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
@@ -28,14 +28,6 @@ TOLD = {
 
 def scene(**changes):
     return both(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD | changes)
-
-
-def held(run: Simulation) -> list[np.ndarray]:
-    """Places, velocities, s, masses, accelerations and slopes of all particles, by their numbers."""
-    p = run.water.particles
-    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.excess, p.mass, *p.acceleration, *p.slope)
-    pairs = [np.stack(pair, axis=-1)[0] for pair in ((y, z), (v, w), rest[0:2], rest[2:4])]
-    return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
 
 @pytest.fixture(scope="module")
@@ -162,25 +154,6 @@ def stirred(step: float | None = None, **of_air) -> Scene:
 @pytest.fixture(scope="module")
 def run(pool) -> Simulation:
     return again(pool, stirred())
-
-
-def follows_double_sums(run: Simulation, steps: int = 7) -> None:
-    """Some steps, and one more beside plain numpy."""
-    plain, dt = PlainBoth(run.scene), run.dt
-    run.advance(steps)
-    r, u, s, m, *_ = held(run)
-    run.advance(1)
-    push, slope, _ = plain.push(r, u, s, m)
-    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if run.water.forces.fullness.acts else None
-    pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
-    u = u + dt * (push + plain.gravity)
-    middle = r + 0.5 * dt * u
-    s = plain.later(middle, u, s, m, slope, pressed, dt, mixed)
-    found = held(run)
-    np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
-    np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
-    np.testing.assert_allclose(found[2], s, atol=1e-9 * np.abs(s).max())
-    np.testing.assert_allclose(found[0], middle + 0.5 * dt * u, atol=1e-12)
 
 
 def test_a_step_equals_double_sums(run):

@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from solvers.grains.bed.filling import DoesNotFit, count_for_depth, headroom, levelled, radii, start_positions
+from solvers.grains.bed.filling import DoesNotFit, _inside, count_for_depth, headroom, levelled, radii, start_positions
 from solvers.grains.bed.sizes import Sizes
 from solvers.motion import Sway
 from solvers.scene import Scene
@@ -225,3 +225,14 @@ def test_a_bed_settles_to_the_requested_depth():
     assert run.observe()["pose"][..., 0] == pytest.approx(pose)
     assert np.linalg.norm(run.snapshot()["velocity"], axis=-1).mean() > 1e-3
     run.close()
+
+
+@pytest.mark.parametrize("outline", OUTLINES.values(), ids=OUTLINES)
+def test_points_inside_an_outline_are_those_that_matplotlib_finds_either_way_round(outline):
+    from matplotlib.path import Path
+
+    points = np.random.default_rng(3).uniform(outline.min(axis=0) - 0.05, outline.max(axis=0) + 0.05, (2000, 2))
+    for way in (outline, outline[::-1]):
+        found = _inside(points, way)
+        assert found.any() and not found.all()
+        assert (found == Path(way).contains_points(points)).all()

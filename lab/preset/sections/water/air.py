@@ -48,6 +48,13 @@ class Air:
         Annotated[float, Unit("m^2"), Interval(ge=0)],
         Doc("Area of openings through which air comes and goes; the tank is closed without it."),
     ] = 0.0
+    reduced: Annotated[
+        bool,
+        Doc(
+            "Whether the pressures between particles are over those of this fluid at rest, as one needs that is nearly "
+            "as heavy as the water; gauges show the whole."
+        ),
+    ] = False
     interface: Annotated[
         Literal[*INTERFACES] | None,
         Doc("What acts between water and air, see `solvers.fluid.phases.interfaces`; by default the scheme's."),

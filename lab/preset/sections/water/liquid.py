@@ -21,6 +21,7 @@ from lab.preset.sections.water.tanks import Tanked, pools
 from solvers.fluid import given
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
+from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.walls.layers import edge_of
 from solvers.tank.outline import moments
 
@@ -75,8 +76,8 @@ def liquid(preset: Wet) -> given.Water:
     )
     if made.air is not None and water.background_pressure is None:
         over = max(z for _, z in preset.tank.corners) - bounds(preset)[1]
-        weight = made.air.density * preset.run.gravity * over
-        made = replace(made, background=background(made.softened.air, made, weight))
+        hanging = Reduced.hanging(made, preset.run.gravity, over)
+        made = replace(made, background=background(made.softened.air, made, hanging))
     return made
 
 
@@ -95,6 +96,7 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         cohesion=Cohesion.pull(heavy, air.density, preset.run.gravity, depth(preset)) if acts == "cohesion" else 0.0,
         soft_speed=0.0 if air.stiff_from is None else sound,
         stiff_from=air.stiff_from or 0.0,
+        reduced=float(bounds(preset)[1]) if air.reduced else None,
     )
 
 

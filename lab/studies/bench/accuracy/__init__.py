@@ -33,5 +33,6 @@ STUDIES = {
     "asked": asked.study,
     "asked-ship": asked.study_ship,
     "levels": levels.study,
+    "defaults": levels.study_defaults,
 }
 BENCH = Bench("accuracy", "Speed against error", STUDIES)

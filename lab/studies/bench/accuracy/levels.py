@@ -1,4 +1,4 @@
-"""The levels of accuracy: settings, cost and results of each, and the reasons for the defaults."""
+"""The levels of accuracy: settings, cost and results of each; and the reasons for the defaults, which are words."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ FEW = 6  # beds at the full stiffness
 REASONS = {
     "integrator: Verlet": """At the derived step it errs as little in a collision as any scheme here, and less than
         Gear's in a shaken bed: contacts that open and close in mid-step hold a scheme of the fifth order to the first,
-        and a step of it costs nearly two of Verlet's. The source's scheme is not worth it.""",
+        and two steps of it cost three of Verlet's. The source's scheme is not worth it.""",
     "step: derived from 0.1 % in the restitution": """Twice the step errs four times as much; beds differ among each
         other by far more than either, which is why draft takes longer steps.""",
     "stiffness: a hundredth of the material's": """The softest scale whose angles and responses cannot be told from
@@ -23,7 +23,7 @@ REASONS = {
     "tangential law: the preset's": """The source's presets have the source's law, Haff and Werner's, which creeps
         under a lasting load, as the section on creep shows. Mindlin's with history costs the same and stands still:
         take it where a bed is to rest.""",
-    "skin: 0.05 diameters": "The fastest at rest and within a few per cent of the fastest in a thrown bed.",
+    "skin: 0.05 diameters": "The fastest in a thrown bed, and within a tenth of the fastest at rest.",
     "repeats": "By the interval you need: see the section on repeats. One bed says little: a few degrees either way.",
 }
 
@@ -65,6 +65,10 @@ def study(page: Page, work: Path, fast: bool) -> None:
         "cost",
     ]
     page.table(header, rows)
+
+
+def study_defaults(page: Page, work: Path, fast: bool) -> None:
+    """Add what follows from the other sections for the defaults; nothing is computed."""
     page.section("Why the defaults are what they are")
     page.table(["default", "because"], [[name, " ".join(reason.split())] for name, reason in REASONS.items()])
 

@@ -5,7 +5,7 @@ in place of an older one.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from datetime import date
 from pathlib import Path
 
@@ -116,7 +116,7 @@ def who(record: Record) -> str:
     """Who measured, and with which version when."""
     if record.independent:
         return "others, with decks of their own"
-    return f"the lab, {replace(record.made, processor='').words}"
+    return f"the lab, {record.made.when}"
 
 
 def ratios_of(found: Mapping[str, np.ndarray], theirs: Sequence[str], ours: Sequence[str]) -> list[Ratio]:

@@ -17,11 +17,10 @@ TEXTS = {
         neighbours have an error that does not fall with the spacing (Quinlan, Basa & Lastiwka 2006), and Colagrossi,
         Souto-Iglesias, Antuono & Marrone (2013) found that viscous gravity waves converge only if that number grows.
         Between periodic sides 20 layers with h = 3 Δx decay too fast by 0.7 % instead of 9.2 %.""",
-    air.SECTION: """What fails is the decay below a fluid of half the water's density: with h = 3 Δx it is 1.57 and 1.41
-        times that of theory at 20 and 40 layers, where half a spacing at the surface accounts for 1.18. Rows of
-        particles slide along each other there under 4.9 kPa, what the upper fluid's weight draws at its lid, and are
-        held as teeth are; with h = 2 Δx, with which a square lattice is stiffer against a slip, the rate is off by +1.3
-        and +6.6 %, and the decay 2.2 and 1.7 times that of theory. Under air the surface has a hundredth of that
-        pressure, and nothing of this is seen. A drop and a bubble under tension need a background pressure above σ
-        times the gradient of the phase, and forces along the line between particles, see the manual's page on air.""",
+    air.SECTION: """The wave below a fluid of half the water's density is under pressures over those of that fluid at
+        rest (`solvers.fluid.phases.reduced`). Under whole pressures rows of particles slide along each other at 4.9
+        kPa, what the upper fluid's weight draws at its lid, and are held as teeth are: at 20 and 40 layers the rate is
+        off by +1.3 and +6.6 %, and the decay 2.2 and 1.7 times that of theory. A drop and a bubble under tension need a
+        background pressure above σ times the gradient of the phase, and forces along the line between particles, see
+        the manual's page on air.""",
 }

@@ -11,6 +11,7 @@ from lab.preset.outline import rectangle
 from lab.studies.case import Line
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
 from solvers.fluid.phases.adiabatic import background
+from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
@@ -155,4 +156,4 @@ def of_both(water: Water, outline: np.ndarray, depth: float) -> Scene:
 
 def bearing(water: Water, over: float = 0.0) -> Water:
     """A water with the background pressure that presets have, under air of a height (m)."""
-    return replace(water, background=background(water.air, water, water.air.density * G * over))
+    return replace(water, background=background(water.air, water, Reduced.hanging(water, G, over)))

@@ -29,10 +29,10 @@ PERIODS, A_PERIOD = 5.0, 20
 
 @dataclass(frozen=True)
 class Between:
-    """The wave between water and a lighter fluid (kg/m³); `smoothing` is h/Δx: with 2 a heavy one makes it stiff."""
+    """The wave between water and a lighter fluid (kg/m³), under pressures that are `reduced` by its weight or not."""
 
     density: float
-    smoothing: float = 2.0
+    reduced: bool = False
 
     @property
     def rate(self) -> float:
@@ -59,10 +59,10 @@ class Between:
     def made(self, rows: int) -> Scene:
         """The wave on a level surface, with so many layers of each fluid."""
         spacing, sound = 1.0 / rows, 10.0 * np.sqrt(G)
-        alpha = 8.0 * VISCOSITY / (self.smoothing * spacing * sound)
+        alpha = 8.0 * VISCOSITY / (2.0 * spacing * sound)
         speed = STEEP / K * self.rate  # of the water at the surface
-        air = Air(self.density, sound, alpha)
-        water = Water(spacing, sound, smoothing=self.smoothing, alpha=alpha, speed=speed, air=air)
+        air = Air(self.density, sound, alpha, reduced=1.0 if self.reduced else None)
+        water = Water(spacing, sound, alpha=alpha, speed=speed, air=air)
         made = of_both(bearing(water, 1.0), box(1.0, 2.0), 1.0)
         set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
         return made
@@ -91,7 +91,7 @@ def mode(place: np.ndarray) -> np.ndarray:
 def waves(fast: bool) -> Found:
     """Waves of water under air, and under a fluid of half its density."""
     rows, lines, notes = WAVED[:1] if fast else WAVED, [], []
-    for fluid in (Between(1.2), *(() if fast else (Between(500.0, 3.0),))):
+    for fluid in (Between(1.2), *(() if fast else (Between(500.0, reduced=True),))):
         swings = [fluid.waved(count) for count in rows]
         exact = fluid.viscous
         errors = [one.rate / exact.imag - 1.0 for one in swings]
@@ -120,6 +120,7 @@ def waves(fast: bool) -> Found:
         lamb = f"{-exact.real / (2.0 * VISCOSITY * K**2):.2f}"
         notes.append(
             f"{fluid.density:g} kg/m³: with viscosity the rate is {slower} off ω² = g k (ρ_w − ρ_a)/(ρ_w coth kd + "
-            f"ρ_a coth kd_a), the decay {lamb} of 2 ν k². {rows} layers: rates {shown}, decay {decays} of that."
+            f"ρ_a coth kd_a), the decay {lamb} of 2 ν k². {rows} layers: rates {shown}, decay {decays} of that"
+            f"{', with the reduced pressure.' if fluid.reduced else '.'}"
         )
     return Found(lines, notes=notes)
