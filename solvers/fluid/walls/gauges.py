@@ -95,8 +95,9 @@ class Gauges:
     def at(self, b, lane):
         """The pressure (Pa) of a probe; of two phases the water's where it is half of what is seen or more.
 
-        Else the mean of both, the water's by twice its share. A bubble of a particle or two holds the density at which
-        it was cut off (`Dispersed`), where the water's pressure would squeeze it to its own; so it is not shown.
+        So a gauge shows water as it does without air (DRY). Else it is the mean of both, the water's by twice its
+        share. A bubble of a particle or two keeps the density at which it was cut off (`Dispersed`), where the water's
+        pressure would squeeze it to its own; it is not shown.
         """
         p = self.particles
         if ti.static(p.two):
