@@ -1,12 +1,13 @@
 """Hydrodynamic tables of whole hulls, per metre of the ship's length: by strips, or in space by Capytaine.
 
-In space the table is of the hull's mesh up to FINEST √(g/draught), with panels a tenth of the shortest wave there.
+In space the table is of the hull's mesh up to FINEST √(g/draught), with panels along her an eighth of the shortest wave
+there, and more around her, where roll asks for them (`potential.mesh`).
 Above, where waves are short beside the hull and strips are exact in the limit, damping and excitation are those of
 strips, and added mass is theirs less their limit at infinite frequency plus that in space. What is left of the
 difference where they join falls with the fourth power of the frequency.
 
-Limits: with these panels roll of a round hull, a small difference of large pressures, is the least exact; Haskind's
-relation as `cargolab hydrodynamics` prints it tells how exact.
+Limits: roll, a small difference of large pressures, is the least exact; Haskind's relation as `cargolab hydrodynamics`
+prints it tells of waves that are badly resolved, less of bilges that are.
 """
 
 import sys
@@ -32,7 +33,7 @@ from solvers.ship.section import Section
 from solvers.ship.water import Water
 
 FINEST = 1.2  # √(g/draught): the highest frequency that is solved in space
-PANEL = 0.45  # of the draught: a tenth of the length of waves of that frequency is 0.44
+PANEL = 0.5  # of the draught: an eighth of the length of waves of that frequency is 0.55
 MOST_PANELS = 2500.0  # of the half hull, on its bottom
 FADING = 4.0  # power of the frequency with which the difference of hull and strips at the join falls
 SAME = 0.02  # of the displacement, by which section and hull may differ

@@ -3,6 +3,9 @@
 Axes as in `potential.strips`: x aft from the hull's centre of buoyancy, y to starboard, z up from the calm surface.
 Only the starboard half is meshed. Around each station panels have about equal lengths between its knuckles, where
 they are denser; along the hull they are denser at ends that are cut off. Those ends are closed.
+
+Limits: roll's moment is a small difference of large pressures. The error of its damping falls with the square of the
+number of panels around her; shorter ones along her hardly change it.
 """
 
 from dataclasses import dataclass
@@ -16,9 +19,10 @@ from solvers.ship.potential.strips import LEAST, reference
 from solvers.ship.section import Section
 
 KNUCKLE = np.radians(30.0)  # a sharper turn of the outline is kept as an edge between panels
-LEAST_PANELS = 4  # between two knuckles
-ROUND = 12  # panels in a right angle of a bilge: its roll is a small difference of large pressures
-INNER = 0.3  # points within the hull, along and across, per panel
+BETWEEN = 12  # panels from one knuckle to the next, and twice as many in a right angle of a round bilge
+SHORT, LEAST_PANELS = 0.1, 4  # of the half girth: a shorter side has fewer, but no less than so many
+STANDING = 1.24  # k T of the shortest standing waves within a box up to 1.2 √(g/T): k T coth k T = (ω² T/g) (John 1950)
+INNER = 2.0  # points within the hull, along and across, per half length of those
 SYMMETRIC = 1e-6  # of the hull's breadth
 
 
@@ -33,31 +37,31 @@ class HullMesh:
     panels: np.ndarray
     stations: np.ndarray
     rings: np.ndarray
-    across: int
 
     def inner(self) -> np.ndarray:
         """Points (k, 3) m of the starboard half of the waterplane, within the hull.
 
-        Gauss–Legendre points: their spacing matches no standing wave inside the hull. They are fewer than panels, since
-        a point nearer to the sides than a panel is long tells of the panel, not of the hull.
+        Gauss–Legendre points: their spacing matches no standing wave inside the hull. How many they are follows from
+        these waves, not from the panels: a point nearer to the sides than a panel is long tells of the panel alone.
         """
-        along = np.polynomial.legendre.leggauss(max(3, round(INNER * (len(self.stations) - 1))))[0]
-        across = np.polynomial.legendre.leggauss(2 * max(2, round(INNER * self.across)))[0]
         low, high = self.stations.min(), self.stations.max()
+        per_length = INNER * STANDING / (np.pi * -self.rings[..., 1].min())
+        along = np.polynomial.legendre.leggauss(max(3, round(per_length * (high - low))))[0]
+        across = np.polynomial.legendre.leggauss(2 * max(2, round(per_length * self.rings[:, -1, 0].max())))[0]
         order, x = np.argsort(self.stations), 0.5 * (low + high) + 0.5 * (high - low) * along
         half = np.interp(x, self.stations[order], self.rings[order, -1, 0])
         y = half[:, None] * across[across > 0.0]
         return np.stack([np.broadcast_to(x[:, None], y.shape), y, 0.0 * y], axis=-1).reshape(-1, 3)
 
 
-def hull_mesh(form: Form, draught: float, size: float) -> HullMesh:
-    """The mesh with panels of about a `size` (m) at an even draught (m).
+def hull_mesh(form: Form, draught: float, size: float, between: int = BETWEEN) -> HullMesh:
+    """The mesh with panels of about a `size` (m) at an even draught (m), and so many between two knuckles.
 
     Raises `Unavailable` for a hull that is dry, or not alike on both sides.
     """
     x, halves = _wet_halves(form, draught)
     middle, widest = reference(form, draught), int(np.argmax([half[-1, 0] for half in halves]))
-    shares = _shares(halves[widest], size)
+    shares = _shares(halves[widest], size, between)
     rings = np.array([_at(half, shares) for half in halves])
     along = _along(x, halves, size)
     sides = np.stack([[np.interp(along, x, rings[:, k, j]) for k in range(len(shares))] for j in (0, 1)], axis=-1)
@@ -69,7 +73,7 @@ def hull_mesh(form: Form, draught: float, size: float) -> HullMesh:
     for end, turned in ((0, True), (-1, False)):
         if _area(rings[end]) > LEAST * max(map(_area, rings)):
             surfaces.append(_cap(float(place[end]), rings[end], across, turned))
-    return HullMesh(*_joined(surfaces), place, rings, across)
+    return HullMesh(*_joined(surfaces), place, rings)
 
 
 def _wet_halves(form: Form, draught: float) -> tuple[np.ndarray, list[np.ndarray]]:
@@ -110,7 +114,7 @@ def _girth(half: np.ndarray) -> np.ndarray:
     return lengths / max(lengths[-1], 1e-300)
 
 
-def _shares(half: np.ndarray, size: float) -> np.ndarray:
+def _shares(half: np.ndarray, size: float, between: int) -> np.ndarray:
     """Shares of the girth at which panels of about a size meet, knuckles among them, denser beside these."""
     step = np.diff(half, axis=0)
     turn = np.abs(np.diff(np.unwrap(np.arctan2(step[:, 1], step[:, 0]))))
@@ -119,8 +123,9 @@ def _shares(half: np.ndarray, size: float) -> np.ndarray:
     parts = []
     for k, (begin, end) in enumerate(pairwise(edges)):
         inside = (girth[1:-1] > begin) & (girth[1:-1] < end)
-        bent = turn[inside].sum() / (0.5 * np.pi)
-        count = max(LEAST_PANELS, round(ROUND * bent), round((end - begin) * whole / size))
+        bent = 2.0 * turn[inside].sum() / (0.5 * np.pi)
+        wanted = between * max(bent, min(1.0, (end - begin) / SHORT))
+        count = max(LEAST_PANELS, round(wanted), round((end - begin) * whole / size))
         parts.append(begin + (end - begin) * _spaced(count, k > 0, k < len(edges) - 2)[:-1])
     return np.concatenate([*parts, [1.0]])
 

@@ -13,7 +13,10 @@ from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.find import load
 from solvers.ship.naval.form import Form, prism
-from solvers.ship.potential.mesh import hull_mesh
+from solvers.ship.naval.lewis_hull import Particulars, lewis_hull
+from solvers.ship.potential.mesh import BETWEEN, STANDING, hull_mesh
+from solvers.ship.potential.radiation import hydrodynamics
+from solvers.ship.potential.strips import strips
 from solvers.ship.section import Section, box
 from solvers.ship.water import Water
 from tests.oracles.presets import error_of
@@ -21,6 +24,7 @@ from tests.oracles.presets import error_of
 WATER = Water()
 LENGTH, BREADTH, DRAUGHT = 1.0, 0.34, 0.11
 BARGE = prism(box(BREADTH, 0.3), LENGTH)
+FEW = 4  # panels between two knuckles, where roll is not looked at closely
 RADIUS = 0.5
 NEEDED = "needs Capytaine: pip install -e '.[ship3d]'"
 
@@ -69,7 +73,7 @@ def test_hemisphere_is_that_of_hulme(library):
     that flat panels cut off, 1.1 %.
     """
     mass, number = WATER.density * 2.0 / 3.0 * pi * RADIUS**3, np.array([0.5, 1.0])
-    flow = Flow(hull_mesh(hemisphere(41, 80), RADIUS, 0.05), 0.0, WATER)
+    flow = Flow(hull_mesh(hemisphere(41, 80), RADIUS, 0.05, FEW), 0.0, WATER)
     table = flow.table(np.sqrt(number * WATER.gravity / RADIUS))
     assert table.added_mass[:, 1, 1] / mass == pytest.approx([0.6439, 0.5740], rel=0.02)
     assert table.damping[:, 1, 1] / mass / table.frequency == pytest.approx([0.0987, 0.3535], rel=0.03)
@@ -87,9 +91,17 @@ def radiated(flow: Flow, omega: float) -> np.ndarray:
     return omega**2 / (8.0 * pi * WATER.density * WATER.gravity**2 * WATER.group_speed(omega)) * whole
 
 
+def of_anti_roll_tank(between: int) -> tuple[Flow, float]:
+    """The flow about a ship with bilges, and √(g/T)."""
+    given = load("ship/anti-roll-tank").resolved.ship
+    form, height = whole_form(given), given.about[1] - float(given.corners[:, 1].min())
+    mesh = hull_mesh(form, given.draught, 0.65 * given.draught, between)
+    return Flow(mesh, height - given.draught, WATER), float(np.sqrt(WATER.gravity / given.draught))
+
+
 def test_damping_is_the_energy_of_the_waves_made(library):
     """The far field against pressures on the hull."""
-    flow, omega = Flow(hull_mesh(BARGE, DRAUGHT, 0.06), 0.0, WATER), 6.0
+    flow, omega = Flow(hull_mesh(BARGE, DRAUGHT, 0.06, FEW), 0.0, WATER), 6.0
     far, table = radiated(flow, omega), flow.table([omega])
     near = table.damping[0].diagonal()
     assert far[[1, 2, 4]] == pytest.approx(near[[1, 2, 4]], rel=0.05)
@@ -99,21 +111,86 @@ def test_damping_is_the_energy_of_the_waves_made(library):
 
 
 def test_roll_of_a_round_hull_is_right_beside_irregular_frequencies(library):
-    """At 1.1 √(g/T), where a lid inside her took 30 % of roll's damping; at 1.15 heave's jumps without points."""
+    """At 1.1 √(g/T), where a lid inside her took 30 % of roll's damping; at 1.15 heave's jumps without points.
+
+    A box of her length L, breadth B and draught T has its first standing wave at ω² = g k coth kT, k² = π²/L² + π²/B².
+    """
     given = load("ship/anti-roll-tank").resolved.ship
-    form, height = whole_form(given), given.about[1] - float(given.corners[:, 1].min())
-    flow = Flow(hull_mesh(form, given.draught, 0.65 * given.draught), height - given.draught, WATER)
-    unit = np.sqrt(WATER.gravity / given.draught)
-    near = flow.table([1.1 * unit]).damping[0].diagonal()
+    flow, unit = of_anti_roll_tank(BETWEEN)
+    depth = pi * given.draught * np.hypot(1.0 / given.length, 1.0 / np.ptp(given.corners[:, 0]))
+    assert np.sqrt(depth / np.tanh(depth)) == pytest.approx(1.15, abs=0.002)
+    table = flow.table([1.1 * unit, 1.15 * unit])
+    near = table.damping[0].diagonal()
     assert radiated(flow, 1.1 * unit)[1:4] == pytest.approx(near[1:4], rel=0.04)
-    table = flow.table([1.15 * unit])
-    miss = np.abs(table.haskind[0] - table.excitation[0]) / np.abs(table.excitation[0])
-    assert miss[1:4].max() < 0.04
+    miss = np.abs(table.haskind[1] - table.excitation[1]) / np.abs(table.excitation[1])
+    assert miss[1:4].max() < 0.03
+
+
+@pytest.mark.slow
+def test_roll_converges_with_panels_around_the_bilges(library):
+    """In second order, so that a third and more panels tell the limit: 4 panels between knuckles miss a fifth of it."""
+    found = []
+    for between in (4, 8, 12):
+        flow, unit = of_anti_roll_tank(between)
+        found.append(flow.table([1.1 * unit]).damping[0, 3, 3])
+    coarse, fine, finest = found
+    limit = finest + (finest - fine) / (12.0**2 / 8.0**2 - 1.0)
+    order_two = (1.0 / 4.0**2 - 1.0 / 8.0**2) / (1.0 / 8.0**2 - 1.0 / 12.0**2)
+    assert (fine - coarse) / (finest - fine) == pytest.approx(order_two, rel=0.2)
+    assert finest == pytest.approx(limit, rel=0.035)
+    assert coarse < 0.85 * limit
+
+
+@pytest.mark.slow
+def test_a_long_hull_is_her_section_in_roll_too(library):
+    """What 24 draughts of her have more than 16 has no ends: her section's, by another Green function, at 1.1 √(g/T).
+
+    With 4 panels between knuckles her damping in roll would be a fifth less.
+    """
+    given = load("ship/anti-roll-tank").resolved.ship
+    section, draught, omega = Section(given.corners), given.draught, 1.1 * np.sqrt(WATER.gravity / given.draught)
+    rise = given.about[1] - float(given.corners[:, 1].min()) - draught
+    lengths = 16.0 * draught, 24.0 * draught
+    ends = [
+        Flow(hull_mesh(prism(section, length), draught, 0.8 * draught), rise, WATER).table([omega])
+        for length in lengths
+    ]
+    alone = hydrodynamics(section, WATER, given.heave, [omega], about=given.about, count=160)
+
+    for of in (lambda one: one.damping[0].diagonal(), lambda one: np.abs(one.excitation[0])):
+        short, long = (of(one)[1:4] for one in ends)
+        assert (long - short) / (lengths[1] - lengths[0]) == pytest.approx(of(alone), rel=0.03)
+
+
+@pytest.mark.slow
+def test_lewis_hull_of_the_s175_in_space(library):
+    """All six degrees of freedom; waves shorter than the ship are scattered as strips scatter them."""
+    particulars = Particulars(175.0, 25.4, 9.5, 15.4, 0.569, kb=5.207, midship=0.966)
+    hull, salt, frequency = lewis_hull(particulars, 21), Water(1025.0), [0.524, 1.047]
+    table = Flow(hull_mesh(hull, 9.5, 0.6 * 9.5), 0.05, salt).table(frequency)
+    size = np.abs(table.excitation)
+    assert (np.abs(table.haskind - table.excitation) / size)[:, 1:4].max() < 5e-3
+    by_strips = np.abs(strips(hull, 9.5, salt, frequency, 9.55, 60).excitation)
+    assert size[1, 1:3] == pytest.approx(by_strips[1, 1:3], rel=0.04)
+    for one in table.added_mass:
+        scale = np.sqrt(np.outer(one.diagonal(), one.diagonal()))
+        assert (np.abs(one - one.T) / scale).max() < 0.02
+    for one in table.damping:  # no motion takes energy from calm water
+        assert np.linalg.eigvalsh(0.5 * (one + one.T)).min() > -1e-3 * one.diagonal()[1]
+
+
+def test_bilges_have_their_panels_whatever_the_size():
+    given = load("ship/anti-roll-tank").resolved.ship
+    for size in (0.4, 1.5):
+        mesh = hull_mesh(whole_form(given), given.draught, size * given.draught)
+        assert mesh.rings.shape[1] == 1 + 3 * BETWEEN
+    waves = np.ptp(mesh.stations) * STANDING / given.draught / pi  # half lengths of the shortest standing wave
+    assert len(np.unique(mesh.inner()[:, 0])) > 1.5 * waves
 
 
 def test_points_within_take_irregular_frequencies_away(library):
     """Above √(g/T) a box without them has a heave damping that jumps, even below zero; with them, it falls evenly."""
-    flow, frequency = Flow(hull_mesh(BARGE, DRAUGHT, 0.06), 0.0, WATER), (9.8, 10.2, 10.6)
+    flow, frequency = Flow(hull_mesh(BARGE, DRAUGHT, 0.06, FEW), 0.0, WATER), (9.8, 10.2, 10.6)
     damping = flow.table(frequency).damping[:, 2, 2]
     assert (damping > 0.0).all()
     assert (np.diff(damping) < 0.0).all()
