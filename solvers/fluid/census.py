@@ -248,10 +248,14 @@ class Census:
     @ti.func
     def velocity_now(self, w, b, lane):
         """Velocity (m/s) of a particle over the earth now, in the tank's axes: that kept, and half a kick."""
-        p, half = self.particles, self.behind[w]
+        p, c, half = self.particles, self.constants, self.behind[w]
+        pull = [self.now[3 + a][w] for a in ti.static(range(p.axes))]
+        if ti.static(c.modified):
+            for a in ti.static(range(p.axes)):
+                pull[a] *= ti.cast(c.reduced.sinking(c, p.gas_at(b, lane)), self.exact)
         return [
             ti.cast(p.velocity[a][b, lane], self.exact)
-            + half * (ti.cast(p.acceleration[a][b, lane], self.exact) + self.now[3 + a][w])
+            + half * (ti.cast(p.acceleration[a][b, lane], self.exact) + pull[a])
             for a in ti.static(range(p.axes))
         ]
 
@@ -276,11 +280,17 @@ class Census:
         t = 1.0 - ti.max(0.0, ti.min(1.0, x))
         return 0.5 - t * t * t * (1.0 - 0.5 * t)
 
-    def relative(self, time: float, place: np.ndarray, velocity: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """Velocities (W, n, 2) m/s relative to the tank at `time` (s), from those kept and the last accelerations."""
+    def relative(self, time: float, place, velocity, push, gas: np.ndarray) -> np.ndarray:
+        """Velocities (W, n, 2) m/s relative to the tank at `time` (s), from those kept and the last accelerations.
+
+        Of each two (W, n) along y and z; `gas` (W, n) is 1 for air.
+        """
         self.note(time)
         tank_y, tank_z, rate, pull_y, pull_z, _ = (field.to_numpy()[:, None] for field in self.now)
         half = self.behind.to_numpy()[:, None]
+        if self.constants.modified:
+            sinks = (1.0 - gas) * (1.0 - self.constants.numbers["buoyed"])
+            pull_y, pull_z = pull_y * sinks, pull_z * sinks
         return np.stack(
             [
                 velocity[0] + half * (push[0] + pull_y) - tank_y + rate * place[1],

@@ -18,7 +18,7 @@ def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
     """What `refuse_state` asks of the particles in a world of a `solvers.fluid.matter.WaterMatter` at `time` (s)."""
     p = matter.particles
     found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
-    velocity = matter.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
+    velocity = matter.census.relative(time, found[0:2], found[2:4], found[4:6], matter.gas)[world]
     place, speed = np.stack(found[0:2], axis=-1)[world], np.linalg.norm(velocity, axis=1)
     return {
         "place": place,

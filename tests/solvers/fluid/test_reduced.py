@@ -63,6 +63,20 @@ def test_gauges_show_the_whole_pressure(pool):
 
 
 @pytest.mark.slow
+def test_velocities_are_those_of_now(pool):
+    """At rest nothing moves after a step, though velocities are kept half a kick behind; nor does energy come of it."""
+    run = again(pool, scene())
+    start = run.observe()
+    run.advance(1)
+    rows, state = run.observe(), run.snapshot()
+    kick = 0.5 * run.dt * GRAVITY * DENSITY / 1000.0
+    assert max(np.sqrt((state[f"{name}_velocity"] ** 2).mean()) for name in ("water", "air")) < 0.5 * kick
+    moving = 0.5 * held(run)[3].sum() * kick**2
+    assert rows["water_kinetic"][0] < 0.25 * moving
+    assert abs(rows["water_total"][0] - start["water_total"][0]) < 0.25 * moving
+
+
+@pytest.mark.slow
 def test_a_step_equals_double_sums(pool):
     follows_double_sums(again(pool, stirred()))
 
