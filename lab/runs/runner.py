@@ -63,7 +63,7 @@ def run_preset(
     with Progress(quiet) as progress, hint(folder), _second_process(video, beside) as beside:
         with progress.costs.of("settle"):
             run = prepare(loaded, folder)
-        progress.say(f"{loaded.name}: {loaded.resolved.title}")  # no part of it is refused now; the rest takes long
+        progress.say(f"{loaded.name}: {loaded.resolved.title}")  # little of it can be refused now; the rest takes long
         with only_one(folder):
             run.make_recording()
             return _complete(run, None, progress, plots, video, beside)
