@@ -78,6 +78,13 @@ def nearest_linear_peak(one: Outcome, wanted: float) -> float:
     return min((omega for omega, _ in found), key=lambda omega: abs(omega - wanted), default=np.nan)
 
 
+def nearest_sea_peak(one: Outcome, wanted: float) -> float:
+    """As `nearest_peak`, of roll for each metre of wave in a random sea, where the sea is strong enough."""
+    heard = met(one.recording, 0, ROLL)
+    found = peaks(heard.frequency[heard.strong], np.abs(heard.ratio[heard.strong]))
+    return min((omega for omega, _ in found), key=lambda omega: abs(omega - wanted), default=np.nan)
+
+
 def linear_roll(one: Outcome, _: object) -> float:
     """Roll over wave amplitude (rad/m) at the run's wave frequency by linear theory."""
     return float(np.interp(one.recording.preset.waves.frequency, *linear_response(one.recording.preset)))
@@ -141,6 +148,7 @@ NUMBERS = {
     "linear_roll": (ROLL_UNIT, linear_roll),
     "roll_peak": ("rad/s", nearest_peak),
     "linear_roll_peak": ("rad/s", nearest_linear_peak),
+    "sea_roll_peak": ("rad/s", nearest_sea_peak),
 }
 
 
