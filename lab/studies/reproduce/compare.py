@@ -22,6 +22,7 @@ from lab.studies.reproduce.estimates import (
     falling,
     mean,
     mostly,
+    paired_difference,
     paired_ratio,
     ratio,
     scatters_more,
@@ -209,7 +210,7 @@ def _pair(of: Callable[[Value | None, Value | None], Estimate | None]) -> Callab
     def kind(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:
         first, second = (one.value for one in numbers)
         estimate = of(first, second)
-        unit = first.unit if of is difference and first else ""
+        unit = first.unit if of in (difference, paired_difference) and first else ""
         if claim.between:
             return held(claim.says, claim.source, estimate, claim.between, claim.tolerance, unit)
         ours, known = ("not found", "") if estimate is None else (estimate.told(unit), estimate.interval(unit))
@@ -265,6 +266,7 @@ KINDS = {
     "alike": _alike,
     "difference": _pair(difference),
     "ratio": _pair(ratio),
+    "paired difference": _pair(paired_difference),
     "paired ratio": _pair(paired_ratio),
     "same": _same,
     "most": _most,

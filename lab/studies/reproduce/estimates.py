@@ -92,14 +92,28 @@ def ratio(value: Value | None, reference: Value | None) -> Estimate | None:
     return Estimate(found, hypot(first, second), _freedom(value, reference, first, second))
 
 
-def paired_ratio(value: Value | None, reference: Value | None) -> Estimate | None:
-    """Ratio of two means of paired beds, which start alike: by their differences; None without two beds."""
-    pairs = zip(value.worlds, reference.worlds, strict=True) if value and reference else ()
-    both = np.array([pair for pair in pairs if None not in pair])
+def paired_difference(value: Value | None, reference: Value | None) -> Estimate | None:
+    """Mean difference of paired numbers, of beds that start alike or of the same cycles; None without two pairs."""
+    both = _pairs(value, reference)
     if len(both) < 2:
         return None
-    apart, middle = both[:, 0] - both[:, 1], both[:, 1].mean()
-    return Estimate(1.0 + apart.mean() / middle, apart.std(ddof=1) / len(both) ** 0.5 / abs(middle), len(both) - 1)
+    apart = both[:, 0] - both[:, 1]
+    return Estimate(float(apart.mean()), float(apart.std(ddof=1)) / len(both) ** 0.5, len(both) - 1)
+
+
+def paired_ratio(value: Value | None, reference: Value | None) -> Estimate | None:
+    """Ratio of two means of paired beds, which start alike: by their differences; None without two beds."""
+    apart = paired_difference(value, reference)
+    if apart is None:
+        return None
+    middle = _pairs(value, reference)[:, 1].mean()
+    return Estimate(1.0 + apart.value / middle, apart.error / abs(middle), apart.freedom)
+
+
+def _pairs(value: Value | None, reference: Value | None) -> np.ndarray:
+    """Numbers (n, 2) of worlds in which both are known."""
+    pairs = zip(value.worlds, reference.worlds, strict=True) if value and reference else ()
+    return np.array([pair for pair in pairs if None not in pair])
 
 
 def together(verdicts: Sequence[Verdict]) -> Verdict:

@@ -65,6 +65,7 @@ DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
     "onset": beds.onset,
     "early_shift": outlines.early_shift,
     "early_range": outlines.early_range,
+    "cycle_peaks": prismatic.cycle_peaks,
     "peak_at": prismatic.peak_at,
 }
 ROWS: Mapping[str, Callable[[Found], list[Row]]] = {

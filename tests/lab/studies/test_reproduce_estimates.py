@@ -14,6 +14,7 @@ from lab.studies.reproduce.estimates import (
     falling,
     mean,
     mostly,
+    paired_difference,
     paired_ratio,
     ratio,
     scatters_more,
@@ -64,10 +65,14 @@ def test_confidence_is_that_of_students_and_welchs_t():
     assert share.error == pytest.approx(
         np.hypot(value.std / 5**0.5, share.value * reference.std / 3**0.5) / np.mean(second)
     )
-    pairs = paired_ratio(over_worlds(np.add(first, [1.0, 2.0, 1.0, 3.0, 2.0]), "deg"), value)
+    moved = over_worlds(np.add(first, [1.0, 2.0, 1.0, 3.0, 2.0]), "deg")
+    related = stats.ttest_rel(moved.worlds, first).confidence_interval(0.95)
+    assert paired_difference(moved, value).ends() == pytest.approx((related.low, related.high))
+    pairs = paired_ratio(moved, value)
     student = stats.t.interval(0.95, 4, loc=1.8, scale=stats.sem([1.0, 2.0, 1.0, 3.0, 2.0]))
     assert (pairs.ends()[0] - 1.0) * 32.0 == pytest.approx(student[0])
     assert paired_ratio(over_worlds([30.0], "deg"), over_worlds([31.0], "deg")) is None
+    assert paired_difference(None, value) is None
 
 
 @pytest.mark.parametrize(

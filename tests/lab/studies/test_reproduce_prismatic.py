@@ -82,6 +82,18 @@ def test_a_gauge_is_dry_below_the_weight_of_one_layer_of_particles():
     assert some.value == pytest.approx(20.0) and some.note == ", wet in 2 of 9"
 
 
+def test_what_air_adds_is_told_cycle_by_cycle():
+    """Cycles whose peaks are 100 Pa apart, however they scatter, differ by 100 Pa without an error."""
+    of, hits = "sloshing/source-p-50-roll", np.array([200.0, 400.0] * 4 + [300.0])
+    water = hit(of, 1.34, 1015.0, list(hits))
+    for more, verdict in ((100.0, Verdict.AGREES), (-100.0, Verdict.DIFFERS)):
+        both = hit(of, 1.34, 1015.0, list(hits + more), {"air.sound_speed": "equal"})
+        assert prismatic.cycle_peaks(both, 1).worlds == pytest.approx([1015.0 - 1000.0 * 9.81 * 0.0525] * 9)
+        told = experiments("water")["prismatic-half-air-finest"].tell({"one phase, 25 m/s": water, "with air": both})
+        (row,) = (row for row in told.rows if "P2" in row.quantity)
+        assert row.ours.startswith(f"{more:g} ± 0") and row.verdict is verdict
+
+
 def test_pages_tell_peaks_in_the_upper_chamber():
     told = experiments("water")["prismatic-half"].tell(
         {"50 %, roll": hit("sloshing/source-p-50-roll", 1.34, 1015.0, [90.0] * 9)}

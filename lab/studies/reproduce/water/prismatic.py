@@ -123,6 +123,12 @@ def peak_at(outcomes: Sequence[Outcome], given: float) -> Value:
     return over_worlds([less], "Pa", uncertainties=[found.error], kind="cycles", note=note)
 
 
+def cycle_peaks(outcomes: Sequence[Outcome], given: float) -> Value:
+    """The peaks (Pa) at P1, P2 or P3 less the pressure at rest, of each of the CYCLES as of a bed of its own."""
+    one, gauge = outcomes[0], f"P{given:.0f}"
+    return over_worlds(pressure(one, gauge).peaks - at_rest(one, gauge), "Pa")
+
+
 def told_peak(one: Outcome, gauge: str) -> str:
     """The mean peak at a gauge in words."""
     value = peak_at([one], float(gauge[1:]))
