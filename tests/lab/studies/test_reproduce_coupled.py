@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from lab.measures.sea_response import Transfer
 from lab.preset.find import load
+from lab.studies.reproduce.ships import coupled
 from lab.studies.reproduce.ships.breaking import has_air_below
 from lab.studies.reproduce.ships.coupled import limit_and_order
 from lab.studies.reproduce.ships.four_ways import swings
@@ -67,3 +69,14 @@ def test_a_decay_tells_both_swings_and_their_damping():
     for (damped, damping), (frequency, share, _) in zip(swings(one), (slow, fast), strict=True):
         assert damped == pytest.approx(frequency * np.sqrt(1.0 - share**2), rel=1e-3)
         assert damping == pytest.approx(share, rel=0.03)
+
+
+def test_peaks_in_a_sea_are_looked_for_where_it_is_strong(monkeypatch):
+    """Of peaks at 4, 5.25 and 6.5 rad/s and a fourth, where there are hardly any waves, each is found but that one."""
+    omega = np.arange(2.5, 9.5, 0.0314)
+    roll = sum(np.exp(-(((omega - each) / 0.3) ** 2)) for each in (4.0, 5.25, 6.5, 8.5))
+    sea = np.where(omega < 8.0, 1.0, 0.01)
+    heard = Transfer(omega, sea, sea * roll**2, roll.astype(complex), np.ones_like(omega), 9.0)
+    monkeypatch.setattr(coupled, "met", lambda *_: heard)
+    found = [coupled.nearest_sea_peak(SimpleNamespace(recording=None), each) for each in (4.0, 5.25, 7.0, 8.5)]
+    assert found == pytest.approx([4.0, 5.25, 6.5, 6.5], abs=0.01)
