@@ -67,6 +67,7 @@ DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
     "early_range": outlines.early_range,
     "cycle_peaks": prismatic.cycle_peaks,
     "peak_at": prismatic.peak_at,
+    "wet_cycles": prismatic.wet_cycles,
 }
 ROWS: Mapping[str, Callable[[Found], list[Row]]] = {
     "stack_lag": stack.stack_lag,

@@ -25,13 +25,19 @@ def swayed(spacing: float, extra: float, highest: float = 100.0, preset: str = "
 
 
 def hit(preset: str, frequency: float, steady: float, hits: list[float], changes: dict | None = None):
-    """A run with a steady pressure (Pa) at P1, hits (Pa) of 40 ms at P2, one in each of the last cycles, none at P3."""
+    """A run with a steady pressure (Pa) at P1, hits (Pa) of 40 ms at P2, one in each of the last cycles, none at P3.
+
+    Where P2 is hit a square centimetre of water is there, which is elsewhere else.
+    """
     time = np.arange(0.0, 20.0, 1e-3)
     struck = np.zeros_like(time)
     for back, high in enumerate(reversed(hits)):
         struck[np.abs(time - (time[-1] - (back + 0.5) / frequency)) < 0.02] = high
     shown = np.stack([np.full_like(time, steady), struck, np.zeros_like(time)], axis=-1)[:, None]
-    one = ran(preset, {"water.spacing": "3.5 mm", **(changes or {})}, time=time, gauge_pressure=shown)
+    place = np.where(struck[::10, None, None, None] > 0.0, [-0.15, 0.155], 0.0) + np.zeros((1, 1, 100, 1))
+    of = {"time": time, "gauge_pressure": shown, "frames_time": time[::10], "frames_water_place": place}
+    one = ran(preset, {"water.spacing": "3.5 mm", **(changes or {})}, **of)
+    one.recording.volume = np.full((1, 100), 1e-6)
     one.measures["highest_water"] = Value(100.0, "mm")
     return [one]
 
@@ -90,8 +96,18 @@ def test_what_air_adds_is_told_cycle_by_cycle():
         both = hit(of, 1.34, 1015.0, list(hits + more), {"air.sound_speed": "equal"})
         assert prismatic.cycle_peaks(both, 1).worlds == pytest.approx([1015.0 - 1000.0 * 9.81 * 0.0525] * 9)
         told = experiments("water")["prismatic-half-air-finest"].tell({"one phase, 25 m/s": water, "with air": both})
-        (row,) = (row for row in told.rows if "P2" in row.quantity)
+        (row,) = (row for row in told.rows if "peak at P2" in row.quantity)
         assert row.ours.startswith(f"{more:g} ± 0") and row.verdict is verdict
+
+
+def test_the_time_with_water_at_a_gauge_is_told_of_each_cycle():
+    """Hits of 40 ms in the first and the last cycle of 1/1.34 s."""
+    struck = hit("sloshing/source-p-50", 1.34, 600.0, [90.0, *[0.0] * 7, 90.0])
+    shares = prismatic.wet_cycles(struck, 2).worlds
+    assert shares == pytest.approx([0.04 * 1.34, *[0.0] * 7, 0.04 * 1.34], rel=0.1)
+    assert prismatic.wet_cycles(struck, 3).worlds == (0.0,) * 9
+    struck[0].recording.volume *= 0.6
+    assert prismatic.wet_cycles(struck, 2).value == 0.0  # 60 mm² are too little
 
 
 def test_pages_tell_peaks_in_the_upper_chamber():

@@ -29,6 +29,8 @@ PHASES = 400  # of a cycle
 AVERAGE = 0.010  # s
 ROOF = 210.0  # mm
 UPPER = ("P2", "P3")  # gauges of the upper chamber
+NEAR = 10.5e-3  # m of a gauge, within which
+WET = 61e-6  # m² of water are water at it: five particles of 3.5 mm, or more finer ones
 DRY = "dry"
 THIRTY = 30.0  # s of motion
 HOURLY = 36000.0  # s from which a duration is told in hours
@@ -93,11 +95,15 @@ class Pressure:
 
 def pressure(one: Outcome, gauge: str = "P1") -> Pressure:
     """The pressure at a gauge over the last cycles of the run's motion."""
-    series, motion = one.recording.series, one.recording.preset.motion
-    driven = motion.sway or motion.roll
-    time, column = series["time"], pressure_gauges(one.recording).index(gauge)
-    last = time >= time[-1] - CYCLES / driven.frequency
-    return Pressure(time[last], series["gauge_pressure"][last, 0, column])
+    series, column = one.recording.series, pressure_gauges(one.recording).index(gauge)
+    last = _last(one, series["time"])
+    return Pressure(series["time"][last], series["gauge_pressure"][last, 0, column])
+
+
+def _last(one: Outcome, time: np.ndarray) -> np.ndarray:
+    """Which of the times (T,) s are of the last CYCLES."""
+    motion = one.recording.preset.motion
+    return time >= time[-1] - CYCLES / (motion.sway or motion.roll).frequency
 
 
 def at_rest(one: Outcome, gauge: str) -> float:
@@ -127,6 +133,16 @@ def cycle_peaks(outcomes: Sequence[Outcome], given: float) -> Value:
     """The peaks (Pa) at P1, P2 or P3 less the pressure at rest, of each of the CYCLES as of a bed of its own."""
     one, gauge = outcomes[0], f"P{given:.0f}"
     return over_worlds(pressure(one, gauge).peaks - at_rest(one, gauge), "Pa")
+
+
+def wet_cycles(outcomes: Sequence[Outcome], given: float) -> Value:
+    """The share of the time with water at P2 or P3, by pictures, of each of the CYCLES as of a bed of its own."""
+    one = outcomes[0]
+    frames, volume = one.recording.frames, one.recording.volume[0]
+    gauge, last = np.array(one.recording.preset.gauges[f"P{given:.0f}"].place), _last(one, frames["time"])
+    away = (np.linalg.norm(frames["water_place"][k][0] - gauge, axis=1) for k in np.flatnonzero(last))
+    wet = np.array([volume[each < NEAR].sum() >= WET for each in away])
+    return over_worlds([part.mean() for part in np.array_split(wet, CYCLES)], "")
 
 
 def told_peak(one: Outcome, gauge: str) -> str:
