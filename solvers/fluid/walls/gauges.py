@@ -93,16 +93,14 @@ class Gauges:
 
     @ti.func
     def at(self, b, lane):
-        """The pressure (Pa) of a probe; of two phases the water's where it is half of what is seen or more.
+        """The pressure (Pa) of a probe; of two phases the water's where that is more than DRY of both, else the air's.
 
-        So a gauge shows water as it does without air (DRY). Else it is the mean of both, the water's by twice its
-        share. A bubble of a particle or two keeps the density at which it was cut off (`Dispersed`), where the water's
-        pressure would squeeze it to its own; it is not shown.
+        So one and two phases show water alike, and where without air it is zero a gauge shows the air. A bubble of a
+        particle or two, which keeps the density at which it was cut off (`Dispersed`), is not shown.
         """
         p = self.particles
         if ti.static(p.two):
-            share = ti.min(2.0 * p.share[b, lane], 1.0)
-            return share * p.pressure[b, lane] + (1.0 - share) * p.pressure_of_air[b, lane]
+            return ti.select(p.share[b, lane] > DRY, p.pressure[b, lane], p.pressure_of_air[b, lane])
         else:
             return p.pressure[b, lane]
 

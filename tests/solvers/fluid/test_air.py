@@ -56,6 +56,18 @@ def test_water_rests_under_air(pool):
     assert state["air_place"].shape[1] == gas.sum()
 
 
+def test_a_gauge_that_sees_more_air_than_water_shows_the_air(pool):
+    """Squeezed water ends two fifths of a spacing below the middle of a gauge, which shows nothing of it."""
+    made = scene(background=40.0)
+    wet, spacing = made.drops[0, :, GAS] < 0.5, made.water.spacing
+    made.drops[0, :, 1] -= 0.4 * spacing
+    made.drops[0, wet, EXCESS] = 0.01
+    run = again(pool, made)
+    run.advance(2)
+    shown, squeezed = run.observe()["gauge_pressure"][0], 0.01 * 1000.0 * made.water.sound_speed**2
+    assert shown[0] > 0.5 * squeezed and shown[2] < 0.05 * squeezed
+
+
 def test_closed_air_follows_water_and_walls(pool):
     """Water flies at closed air and takes a fifth of it: the pressures of both sides follow p V^1.4 to 1 %."""
     made, long = scene(background=40.0), 0.5 * (HEIGHT - 0.08)
