@@ -54,10 +54,10 @@ class Simulation:
         stretch: int = 1,
     ):
         self.threads = threads or runtime.available_cores()
-        asked = scene.precision, scene.particles > 0
+        worlds, grains = scene.radius.shape
+        asked = scene.precision, scene.particles > 0, worlds * (grains + scene.particles)
         self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, *asked)
         runtime.initialise(self.threads, self.arch, scene.precision)
-        worlds, grains = scene.radius.shape
         self.scene, self.dt, self.longest_step = scene, scene.time_step(), scene.longest_step(1.0)  # s; at set-up
         count = grains + scene.particles
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)

@@ -9,7 +9,7 @@ from lab.assembly.collisions import known_collisions
 from lab.assembly.grains import check_softness, grain_count, grains_of
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
-from lab.assembly.water import most_drops, water_aboard, water_of
+from lab.assembly.water import most_drops, particles, water_aboard, water_of
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import further_tanks
@@ -90,7 +90,7 @@ def _soft_stride(preset: Preset, scene: Scene, wanted: float) -> int:
 
     wanted: the longest step (s) under stiff air.
     """
-    if choose_arch(preset.run.arch, preset.run.precision) != "cpu":
+    if choose_arch(preset.run.arch, preset.run.precision, True, scene.worlds * particles(scene)) != "cpu":
         return 1  # particles that move one by one have steps of one length
     interval, early = 1.0 / preset.record.series_rate, scene.water.air.stiff_from
     longest = soft_limit(scene, LEVELS[preset.run.accuracy].longer_steps)

@@ -98,11 +98,17 @@ def outlines(out: Path, fast: bool, page_only: bool) -> None:
 
 
 @bench.command()
+@click.argument("studies", nargs=-1)
 @page_option
 @fast_option
 @page_only_option
-def gpu(out: Path, fast: bool, page_only: bool) -> None:
-    """Correctness against the CPU and speed on CUDA and Vulkan, where there is such a device."""
+def gpu(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
+    """Correctness against the CPU and speed on CUDA and Vulkan, where there is such a device.
+
+    \b
+    cargolab bench gpu
+    cargolab bench gpu cuda-water
+    """
     from lab.studies.bench.gpu import BENCH
 
-    click.echo(BENCH.run((), out, fast, page_only))
+    click.echo(BENCH.run(studies, out, fast, page_only))

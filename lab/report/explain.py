@@ -89,7 +89,7 @@ def _one_bed(preset: Preset) -> Simulation:
     """A simulation of the first bed alone, with the units of work it has among all beds; the others are alike."""
     run = preset.run
     scene, position = build(replace(preset, run=replace(run, repeats=1)))
-    asked = run.arch, run.precision, scene.particles > 0
+    asked = run.arch, run.precision, scene.particles > 0, run.repeats * particles(scene)
     arch = "cpu" if scene.answers and run.arch == "auto" else choose_arch(*asked)
     sizes = run.repeats, particles(scene), run.threads or available_cores()
     schedule = choose_schedule(run.schedule, arch, *sizes, scene.answers)

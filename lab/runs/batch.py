@@ -63,7 +63,7 @@ class Run:
     def can_share(self) -> bool:
         """Whether it may share a batch; not in schedule per-band, which divides a world by the number of threads."""
         settings, worlds, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
-        arch = choose_arch(settings.arch, settings.precision, self.scene.particles > 0)
+        arch = choose_arch(settings.arch, settings.precision, self.scene.particles > 0, worlds * count)
         answers, threads = self.scene.answers, settings.threads or available_cores()
         return choose_schedule(settings.schedule, arch, worlds, count, threads, answers) != "per-band"
 
@@ -71,8 +71,8 @@ class Run:
         """The device for a batch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
         settings, own, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
         answers, worlds = self.scene.answers, worlds or own
-        wet, threads = self.scene.particles > 0, settings.threads or available_cores()
-        arch = "cpu" if answers and settings.arch == "auto" else choose_arch(settings.arch, settings.precision, wet)
+        threads, asked = settings.threads or available_cores(), (self.scene.particles > 0, worlds * count)
+        arch = "cpu" if answers and settings.arch == "auto" else choose_arch(settings.arch, settings.precision, *asked)
         schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, answers)
         if arch != "cpu":
             return {"arch": arch, "schedule": schedule}

@@ -174,7 +174,8 @@ class GrainMatter(Matter):
 
         Beside water, which may have been the cause, only if they are.
         """
-        velocity = self.grains.read()["velocity"][world]
+        # Those that are checked: particle by particle they are looked at before a step, which has yet to spread them
+        velocity = np.stack([field.to_numpy()[world, : self.grains.mobile] for field in self.grains.velocity], axis=-1)
         fastest = np.linalg.norm(velocity, axis=1).max()
         if self.scene.water is None or not fastest * dt < self.way_a_step.to_numpy()[0]:
             refuse_speed(world, velocity, time, dt)

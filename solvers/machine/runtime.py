@@ -23,6 +23,7 @@ from solvers.machine import address_space, compiling, kernel_cache, memory
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
+WORTH_DEVICE = 5000  # particles a core, of grains or water, from which a graphics processor is faster (`bench gpu`)
 KERNELS = 256 * 2**20  # bytes of compiled kernels kept; one of water takes 2 MB, and Taichi's 100 MiB are soon full
 
 
@@ -65,15 +66,18 @@ def available_cores() -> int:
     return min(cores, _most_cores)
 
 
-def choose_arch(wanted: str, precision: str, water: bool = False) -> str:
+def choose_arch(wanted: str, precision: str, water: bool = False, particles: int = 0) -> str:
     """The arch to use: for "auto" CUDA, else a Vulkan GPU in hardware, else the CPU; otherwise the one `wanted`.
 
-    Taichi's Vulkan backend has no 64-bit functions, so it serves f32 only. Software Vulkan is 5 to 8 times slower than
-    the CPU, so it is used on request only. It cannot compile the kernels of particles of water (Taichi 1.7.4; "Value
-    does not yet exist", which is known of other programs, too), so `water` has none. Raises Unavailable, one sentence,
-    if the wanted arch is not there.
+    A step on a graphics processor takes some 0.3 ms however few particles it moves, so "auto" takes one only for at
+    least WORTH_DEVICE `particles` a core, those of all worlds together. Taichi's Vulkan backend has no 64-bit
+    functions, so it serves f32 only. Software Vulkan is 5 to 8 times slower than the CPU, so it is used on request
+    only. It cannot compile the kernels of particles of water (Taichi 1.7.4; "Value does not yet exist", which is known
+    of other programs, too), so `water` has none. Raises Unavailable, one sentence, if the wanted arch is not there.
     """
     if wanted == "auto":
+        if particles < WORTH_DEVICE * available_cores():
+            return "cpu"
         if _cuda():
             return "cuda"
         return "vulkan" if precision == "f32" and not water and _real_vulkan() else "cpu"

@@ -42,7 +42,11 @@ class Run:
         float, Of("grains"), Interval(gt=0), Doc("Mean kinetic energy of grains at rest, in m g d of a grain.")
     ] = 1e-6
     threads: Annotated[int, Alike(), Interval(ge=0, le=1024), Doc("Threads on the CPU; 0: one a core.")] = 0
-    arch: Annotated[Literal["auto", "cpu", "cuda", "vulkan"], Alike(), Doc("Device that computes.")] = "auto"
+    arch: Annotated[
+        Literal["auto", "cpu", "cuda", "vulkan"],
+        Alike(),
+        Doc("Device that computes; auto: a graphics processor for many particles."),
+    ] = "auto"
     schedule: Annotated[
         Literal["auto", "per-world", "per-band", "per-grain"], Doc("How the work is divided among threads.")
     ] = "auto"

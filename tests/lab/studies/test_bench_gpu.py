@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.studies.bench.gpu import water
+from lab.studies.bench.gpu.turns import Sizes, in_turns
 from lab.studies.bench.water.cases import gentle
 
 ROWS = 10
@@ -37,6 +39,43 @@ def test_rounding_is_that_of_the_numbers_of_places_and_of_forces():
     (place, force), mixed, double = (water.rounding(kind, case, step) for kind in ("f32", "mixed", "f64"))
     assert 1e-5 < place < 1e-3 and mixed[0] < place and mixed[1] == force
     assert double[1] == pytest.approx(force * np.finfo(np.float64).eps / np.finfo(np.float32).eps)
+
+
+class Room:
+    """A device with room for so many workers, which it counts."""
+
+    def __init__(self, most: int) -> None:
+        self.most, self.held, self.made = most, 0, 0
+
+    def make(self) -> "Room":
+        if self.held == self.most:
+            raise LabError("no room is left.")
+        self.held, self.made = self.held + 1, self.made + 1
+        return self
+
+    def close(self) -> None:
+        self.held -= 1
+
+
+def test_a_worker_that_finds_no_room_beside_others_is_timed_alone():
+    room, none = Room(2), Room(0)
+    makers = {"f64": room.make, "mixed": room.make, "f32": room.make, "processor": none.make}
+    found, faults = in_turns(makers, lambda made: made.held, 3)
+    assert sorted(found) == ["f32", "f64", "mixed"] and faults == {"processor": "no room is left."}
+    assert sorted(found.values()) == [[1, 1, 1], [2, 2, 2], [2, 2, 2]] and room.held == 0
+
+
+def test_sizes_that_are_done_are_kept_and_broken_ones_tried_again(tmp_path):
+    one, none = Room(1), Room(0)
+    for _ in range(2):
+        kept = Sizes(tmp_path, "trial", fast=True)
+        assert kept.timed("small", {"f32": one.make}, lambda made: 7.0, 2) == ({"f32": [7.0, 7.0]}, {})
+        assert kept.timed("large", {"f32": none.make}, lambda made: 7.0, 2)[0] == {}
+    assert one.made == 1
+    none.most = 1
+    assert Sizes(tmp_path, "trial", fast=True).timed("large", {"f32": none.make}, lambda made: 7.0, 1)[0] == {
+        "f32": [7.0]
+    }
 
 
 @pytest.mark.slow

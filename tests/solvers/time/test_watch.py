@@ -85,6 +85,13 @@ def test_the_limit_of_speed_is_a_tenth_of_a_radius_a_step(run):
     assert caught(run.advance, 1).startswith("world 2: ")
 
 
+def test_grain_by_grain_too_a_speed_that_is_no_number_is_called_so():
+    alone = simulation(np.tile(PLACE, (3, 1, 1)), RADIUS, box(0.06, 0.06), start_speed=1.0, schedule="per-grain")
+    alone.advance(1)
+    alone.grains.grains.velocity[0][1, 2] = np.nan
+    assert "not a number" in caught(alone.advance, STEPS)
+
+
 @pytest.mark.parametrize("place", [[0.0, -0.02], [0.0, 0.08], [-0.05, 0.02], [0.05, 0.07]])
 def test_an_escaped_grain_is_detected(run, place):
     run.advance(1)

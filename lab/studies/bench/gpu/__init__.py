@@ -12,12 +12,14 @@ from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
 
 ARCHES = {"cuda": ("f64", "mixed", "f32"), "vulkan": ("f32",)}
+MATTERS = {"grains": grains, "water": water}
+STUDIES = (("cuda", "grains"), ("cuda", "water"), ("vulkan", "grains"))
 
 
-def study(page: Page, work: Path, fast: bool, arch: str) -> None:
-    """Add the section on one kind of device to the page."""
+def study(page: Page, work: Path, fast: bool, arch: str, matter: str) -> None:
+    """Add the section on grains or water on one kind of device to the page."""
     precisions = ARCHES[arch]
-    page.section(arch.upper() if arch == "cuda" else arch.capitalize())
+    page.section(f"{matter.capitalize()} on {arch.upper() if arch == 'cuda' else arch.capitalize()}")
     found, why_not = there(arch, precisions[-1])
     if found is None:
         page.say(f"Not run: {why_not}")
@@ -27,12 +29,12 @@ def study(page: Page, work: Path, fast: bool, arch: str) -> None:
         page.say("""Not run: there is no graphics processor here, and software is none; `cargolab bench gpu --fast`
             tries it on small beds.""")
         return
-    for matter in (grains, water):
-        try:
-            matter.correctness(page, work, arch, precisions)
-            matter.speed(page, work, arch, precisions, fast)
-        except LabError as error:
-            page.say(f"It broke off: {error}")
+    of_matter = MATTERS[matter]
+    try:
+        of_matter.correctness(page, work, arch, precisions)
+        of_matter.speed(page, work, arch, precisions, fast)
+    except LabError as error:
+        page.say(f"It broke off: {error}")
 
 
 def there(arch: str, precision: str) -> tuple[Device | None, str]:
@@ -49,4 +51,9 @@ ABOUT = """Grains and water particle by particle, each on its own, with a launch
 whether a device gives what the processor gives, then how fast it is. M stands for a million particle-steps a second, of
 grains or of particles of water; speeds are medians of several turns. What was not run on a graphics processor is
 marked so. Water runs on CUDA alone: Taichi 1.7.4 cannot compile its kernels for Vulkan."""
-BENCH = Bench("gpu", "Graphics processors", {arch: partial(study, arch=arch) for arch in ARCHES}, ABOUT)
+BENCH = Bench(
+    "gpu",
+    "Graphics processors",
+    {f"{arch}-{matter}": partial(study, arch=arch, matter=matter) for arch, matter in STUDIES},
+    ABOUT,
+)

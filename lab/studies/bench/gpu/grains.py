@@ -3,6 +3,7 @@
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
+from itertools import product
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -11,15 +12,18 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.studies.bench.gpu.drawing import plotted
+from lab.studies.bench.gpu.turns import BESIDE, Sizes, at_once, heading
 from lab.studies.bench.speed.beds import DIAMETER, Bed, usual_bed
-from lab.studies.bench.speed.workers import Speeds, Worker, compared, millions
+from lab.studies.bench.speed.workers import Worker, millions
 from solvers.machine.errors import BadState, Unavailable
+from solvers.machine.runtime import available_cores
 from solvers.motion import Sway
 from solvers.simulation import Simulation
 
 COUNT, TRIED = 2000, 500  # grains of the bed that worlds are made of, and of the bed that is swayed
-COPIES = (5, 50, 500, 2000)  # side by side in one world, and worlds in a batch
+COPIES = (1, 5, 50, 500)  # side by side in one world, and worlds in a batch
 SWAY, TIME = Sway(0.015, 3.0), 0.02  # m, Hz; s
+WALL = 0.3  # s of a turn
 ROUNDINGS = 10.0  # times what another order of sums changes on the processor, or than a place's last digit
 ONE, BATCH = SHAPES = "one world", f"worlds of {COUNT} grains"
 
@@ -27,12 +31,14 @@ ONE, BATCH = SHAPES = "one world", f"worlds of {COUNT} grains"
 def correctness(page: Page, work: Path, arch: str, precisions: tuple[str, ...]) -> None:
     """Tell how far from the processor's places grains of a device end."""
     bed = usual_bed(work, TRIED)
-    rows = []
+    print(f"gpu: {arch}, correctness of grains", flush=True)
+    ways = ("cpu", "per-grain"), ("cpu", "per-world"), (arch, "per-grain")
+    asked = list(product(precisions, ways))
+    places = at_once(lambda precision, way: places_of(way[0], bed, precision, way[1]), asked)
+    ends, rows = dict(zip(asked, places, strict=True)), []
     for precision in precisions:
-        print(f"gpu: {arch}, {precision}, correctness", flush=True)
-        expected = places_of("cpu", bed, precision, "per-grain")
-        reordered = farthest(places_of("cpu", bed, precision, "per-world"), expected)
-        error = farthest(places_of(arch, bed, precision, "per-grain"), expected)
+        expected, reordered, found = (ends[precision, way] for way in ways)
+        reordered, error = farthest(reordered, expected), farthest(found, expected)
         tolerance = ROUNDINGS * max(reordered, last_digit(precision, bed))
         verdict = "pass" if error <= tolerance else "fail"
         rows.append([precision, f"{error:.1e}", f"{reordered:.1e}", f"{tolerance:.1e}", verdict])
@@ -77,33 +83,35 @@ def last_digit(precision: str, bed: Bed) -> float:
 
 def speed(page: Page, work: Path, arch: str, precisions: tuple[str, ...], fast: bool) -> None:
     """Tell grain-steps a second of a device by number of grains."""
-    copies, turns = (COPIES[:1], 3) if fast else (COPIES, 7)
+    copies, turns = (COPIES[:2], 3) if fast else (COPIES, 7)
     bed = usual_bed(work, COUNT)
     page.say(f"""Grains: grain-steps a second. {COUNT} settled grains and as many copies side by side in one world as it
         takes, or as many worlds of them. At the ends of the longest, 32 bits resolve
         {1e6 * DIAMETER * last_digit("f32", bed.times(copies[-1])):.2g} µm only: that is for speed, not for physics.""")
-    found: dict[tuple[str, int], Speeds] = {(shape, number): {} for shape in SHAPES for number in copies}
-    for (shape, number), speeds in found.items():
-        print(f"gpu: {arch}, {number * COUNT} grains, {shape}", flush=True)
-        for precision in precisions:  # one at a time, since the device may hold no more
-            try:
-                speeds |= compared({precision: partial(worker, bed, number, shape, arch, precision)}, turns, 0.3)
-            except LabError as error:
-                page.say(f"{number * COUNT:,} grains, {shape}, {precision}: {error}")
+    names, sizes, found = (*precisions, BESIDE), Sizes(work, f"{arch}-grains", fast), {}
+    for shape, number in product(SHAPES, copies):
+        makers = {name: partial(worker, bed, number, shape, arch, name) for name in names}
+        size = f"{arch}, {number * COUNT} grains, {shape}"
+        timings, faults = sizes.timed(size, makers, lambda made: made.speed(WALL), turns)
+        found[shape, number] = {name: np.array(speeds) for name, speeds in timings.items()}
+        for name, why in faults.items():
+            page.say(f"{number * COUNT:,} grains, {shape}, {name}: {why}")
     page.table(
-        ["grains", "in", *(f"M, {precision}" for precision in precisions)],
+        ["grains", "in", *(f"M, {heading(name)}" for name in names)],
         [
-            [f"{n * COUNT:,}", shape, *(millions(v[p]) if p in v else "–" for p in precisions)]
+            [f"{n * COUNT:,}", shape, *(millions(v[name]) if name in v else "–" for name in names)]
             for (shape, n), v in found.items()
         ],
     )
-    sizes = {(shape, number * COUNT): speeds for (shape, number), speeds in found.items()}
+    drawn = {(shape, number * COUNT): speeds for (shape, number), speeds in found.items()}
     page.figure(
-        f"{arch}-grains", plotted(sizes, "grain"), f"Grain-steps a second on {arch} against the number of grains"
+        f"{arch}-grains", plotted(drawn, "grain"), f"Grain-steps a second on {arch} against the number of grains"
     )
 
 
-def worker(bed: Bed, number: int, shape: str, arch: str, precision: str) -> Worker:
-    """So many copies of a bed on a device, in one world or in one each."""
-    how = {"arch": arch, "precision": precision, "schedule": "per-grain"}
+def worker(bed: Bed, number: int, shape: str, arch: str, name: str) -> Worker:
+    """So many copies of a bed in one world or in one each: on a device in the precision `name`, or BESIDE it."""
+    how = {"arch": arch, "precision": name, "schedule": "per-grain"}
+    if name == BESIDE:
+        how = {"threads": available_cores(), "precision": "mixed"}
     return Worker(bed.times(number), **how) if shape == ONE else Worker(bed, worlds=number, **how)

@@ -6,32 +6,34 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.studies.bench.gpu.drawing import plotted
+from lab.studies.bench.gpu.turns import BESIDE, Sizes, at_once, heading
 from lab.studies.bench.water.accuracy import followed_here, resting, waving
 from lab.studies.bench.water.cases import DEPTH, GRAVITY, Case, gentle
 from lab.studies.bench.water.workers import Worker
+from solvers.machine.runtime import available_cores
 
 ROWS, FEW = 25, 10  # of the pool that is compared; of it in haste
 STEPS = 100  # of the course that is compared
 NEIGHBOURS = 50  # within 2 h = 4 spacings
 PULLED = 7.0 / 3.0  # ∫ |∇W| dA of Wendland's C2 kernel in the plane, in 1/h
 SHARE = 0.1  # of the processor's error, that of its particles: rounding must not be seen beside that
-SIZES, BATCHES = (50, 100, 224, 500, 1000), (4, 40, 400)  # rows of one pool; pools of SIZES[0] rows
+SIZES = (22, 50, 100, 224, 500, 1000)  # rows of one pool
+BATCHED, BATCHES = 50, (4, 40, 400)  # rows of pools side by side, and how many
 UPDATES, LEAST, WALL, TURNS = 4e6, 40, 0.3, 5  # particle-steps, steps and s of a turn at least
 ONE, BATCH = "one pool", "pools side by side"
 SPEEDS = {"particle_steps": "M", "seconds": "simulated s/s"}
-Timed = dict[str, Mapping[str, np.ndarray]]  # by precision
+Timed = dict[str, Mapping[str, np.ndarray]]  # by precision, or BESIDE
 
 
 def correctness(page: Page, work: Path, arch: str, precisions: tuple[str, ...], rows: int = ROWS) -> None:
     """Tell whether water on a device is the processor's in 64 bits."""
-    expected = numbers_of("cpu", rows, "f64", "auto")
+    print(f"gpu: {arch}, correctness of water", flush=True)
+    ways = [("cpu", rows, "f64", "auto"), *((arch, rows, precision, "per-grain") for precision in precisions)]
+    expected, *founds = at_once(numbers_of, ways)
     table = []
-    for precision in precisions:
-        print(f"gpu: {arch}, {precision}, water", flush=True)
-        found = numbers_of(arch, rows, precision, "per-grain")
+    for precision, found in zip(precisions, founds, strict=True):
         table += compared(found, expected, precision, gentle(rows))
     page.say(f"""Water: a pool of 2 m by 1 m with {rows} rows of particles, particle by particle, against whole worlds
         on the processor in 64 bits. Places: the farthest that a particle is off after {STEPS} steps of a standing wave
@@ -108,51 +110,49 @@ KINDS = {"f64": (np.float64, np.float64), "mixed": (np.float64, np.float32), "f3
 
 def speed(page: Page, work: Path, arch: str, precisions: tuple[str, ...], fast: bool) -> None:
     """Tell particle-steps and simulated seconds a second of a device: ever finer pools, and pools side by side."""
-    sizes = [(ONE, rows, 1) for rows in SIZES] + [(BATCH, SIZES[0], worlds) for worlds in BATCHES]
+    sizes = [(ONE, rows, 1) for rows in SIZES] + [(BATCH, BATCHED, worlds) for worlds in BATCHES]
     if fast:
         sizes = [(ONE, FEW, 1), (BATCH, FEW, BATCHES[0])]
     found: dict[tuple[str, int], Timed] = {}
+    names, kept = (*precisions, BESIDE), Sizes(work, f"{arch}-water", fast)
     for shape, rows, worlds in sizes:
         case = gentle(rows)
-        found[shape, worlds * case.count] = timed(page, case, worlds, arch, precisions, 2 if fast else TURNS)
-    page.say(f"""Water: the same pool with ever smaller particles, and pools of {FEW if fast else SIZES[0]} rows side by
+        makers = {name: partial(worker, case, worlds, arch, name) for name in names}
+        count = worlds * case.count
+        a_turn = partial(stepped, max(LEAST, round(UPDATES / count)))
+        timings, faults = kept.timed(f"{arch}, {count} particles, {shape}", makers, a_turn, 2 if fast else TURNS)
+        found[shape, count] = {
+            name: dict(zip(SPEEDS, np.array(turns).T, strict=True)) for name, turns in timings.items()
+        }
+        for name, why in faults.items():
+            page.say(f"{count:,} particles, {shape}, {name}: {why}")
+    page.say(f"""Water: the same pool with ever smaller particles, and pools of {FEW if fast else BATCHED} rows side by
         side, with lists that are made anew as the water asks. Simulated seconds are those of all pools together.""")
-    heads = [f"{words}, {precision}" for precision in precisions for words in SPEEDS.values()]
-    page.table(
-        ["particles", "in", *heads], [[f"{n:,}", shape, *_cells(v, precisions)] for (shape, n), v in found.items()]
-    )
-    drawn = {size: {precision: one["particle_steps"] for precision, one in v.items()} for size, v in found.items()}
+    heads = [f"{words}, {heading(name)}" for name in names for words in SPEEDS.values()]
+    page.table(["particles", "in", *heads], [[f"{n:,}", shape, *_cells(v, names)] for (shape, n), v in found.items()])
+    drawn = {size: {name: one["particle_steps"] for name, one in v.items()} for size, v in found.items()}
     page.figure(f"{arch}-water", plotted(drawn, "particle"), f"Particle-steps a second on {arch}")
 
 
-def timed(page: Page, case: Case, worlds: int, arch: str, precisions: tuple[str, ...], turns: int) -> Timed:
-    """Particle-steps and simulated seconds a second (turns,) by precision; where one breaks off the page says so."""
-    found: Timed = {}
-    for precision in precisions:  # one at a time, since the device may hold no more
-        print(f"gpu: {arch}, {precision}, {worlds * case.count} particles in {worlds}", flush=True)
-        try:
-            worker = Worker(case, ahead=LEAST, arch=arch, precision=precision, schedule="per-grain", worlds=worlds)
-        except LabError as error:
-            page.say(f"{worlds * case.count:,} particles in {worlds}, {precision}: {error}")
-            continue
-        try:
-            steps = max(LEAST, round(UPDATES / (worlds * case.count)))
-            runs = [worker.run(steps * worker.step(), WALL) for _ in range(turns)]
-        finally:
-            worker.close()
-        found[precision] = {
-            "particle_steps": np.array([run.steps * run.particles / run.loop_s for run in runs]),
-            "seconds": np.array([worlds * run.seconds / run.loop_s for run in runs]),
-        }
-    return found
+def worker(case: Case, worlds: int, arch: str, name: str) -> Worker:
+    """So many pools side by side: on a device in the precision `name`, or on the processor BESIDE it."""
+    how = {"arch": arch, "precision": name, "schedule": "per-grain"}
+    if name == BESIDE:
+        how = {"threads": available_cores(), "precision": "mixed"}
+    return Worker(case, ahead=LEAST, worlds=worlds, **how)
 
 
-def _cells(by_precision: Timed, precisions: tuple[str, ...]) -> list[float | str]:
-    """Medians of both speeds for each precision."""
+def stepped(steps: int, made: Worker) -> list[float]:
+    """Particle-steps and simulated seconds of all pools together, a second, in a turn of at least so many steps."""
+    run = made.run(steps * made.step(), WALL)
+    return [run.steps * run.particles / run.loop_s, made.worlds * run.seconds / run.loop_s]
+
+
+def _cells(timings: Timed, names: tuple[str, ...]) -> list[float | str]:
+    """Medians of both speeds of each name."""
     cells: list[float | str] = []
-    for precision in precisions:
-        for name in SPEEDS:
-            known = by_precision.get(precision)
-            scale = 1e-6 if name == "particle_steps" else 1.0
-            cells.append("–" if known is None else scale * float(np.median(known[name])))
+    for name in names:
+        for kind in SPEEDS:
+            scale = 1e-6 if kind == "particle_steps" else 1.0
+            cells.append(scale * float(np.median(timings[name][kind])) if name in timings else "–")
     return cells

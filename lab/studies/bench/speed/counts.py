@@ -1,9 +1,10 @@
 """Operations and bytes of a step, counted by hand from the engine's source.
 
 Counted for 64-bit numbers, one kind of grains, the viscoelastic Hertz law, Mindlin's friction with history, no rolling
-resistance, a closed tank that does not turn. A sum, difference, product, least or largest value is one simple
-operation; changes of sign are free. Bytes are what has to come from and go to memory if nothing else stays in between:
-what a pair's entry in the list holds, and a grain's numbers once a pass, however many contacts it has.
+resistance, a closed tank that does not turn. A sum, difference, product, least or largest value and a choice by a
+comparison are one simple operation; changes of sign are free. Bytes are what has to come from and go to memory if
+nothing else stays in between: what a pair's entry in the list holds, and a grain's numbers once a pass, however many
+contacts it has.
 """
 
 from dataclasses import dataclass
@@ -28,9 +29,11 @@ PAIR = (
     Count("`Contacts.pair_forces`", 26, 0, 0),
     # The root of the overlap; the stiffness.
     Count("`ChosenLaws.forces`", 0, 1, REAL),
-    Count("`HertzViscoelastic.force`", 5, 0, 0),
-    # The damper's limit; two memories, read and written.
-    Count("`Mindlin.force`", 17, 1, 5 * REAL),
+    # Overlaps that a kick begins and ends with 5, what is swept 3, spring and lag 4, damper 3, rise 3, cut 8; the lag.
+    Count("`HertzViscoelastic.force`", 26, 2, REAL),
+    # Stiffness and cap 8, mean of the root 15, slip of the step 7, spring's force 10, dashpot and sum 9; the damper's
+    # limit, the stiffening, three memories, read and written.
+    Count("`Mindlin.force`", 49, 2, 8 * REAL),
     Count("`Grains.push`, twice", 6, 0, 0),
 )
 GRAIN = (

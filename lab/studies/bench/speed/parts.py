@@ -20,6 +20,7 @@ from solvers.motion import Sway
 from solvers.simulation import Simulation
 
 STEP = "whole step"
+LITTLE = 1e-6  # of a step
 WHOLE = ("pair_forces", "wall_forces", "move")  # what a step at rest is made of
 PIECES = ("gather", "laws", "scatter")  # what the pair forces are made of
 NUMBERS = 15  # reals a grain has
@@ -166,7 +167,9 @@ def at_rest(bed: Bed, turns: int, seconds: float) -> AtRest:
     touching = int(run.observe()["contacts"][0])
     pairs = int(run.grains.lists.pairs.length.to_numpy()[0])
     parts = Parts(run)
-    kernels = {name: partial(getattr(parts, name), step=0.0) for name in (*WHOLE, *PIECES)}
+    # Forces are means over a step, so theirs is little; grains are not to move.
+    steps = dict.fromkeys((*WHOLE, *PIECES), LITTLE * run.dt) | {"move": 0.0}
+    kernels = {name: partial(getattr(parts, name), step=step) for name, step in steps.items()}
     timings = {name: repeated(do, seconds) for name, do in {STEP: run.advance, **kernels}.items()}
     found = in_turn(timings, turns)
     run.close()

@@ -18,6 +18,7 @@ class Worker(Aside):
 
     def __init__(self, case: Case, threads: int = 1, ahead: int = AHEAD, arch: str = "cpu", **of_scene: object):
         super().__init__(_Pool, case, threads, ahead, arch, of_scene)
+        self.worlds = of_scene.get("worlds", 1)
 
     def run(self, seconds: float, wall: float) -> PoolRun:
         """From the start for `seconds`, over and over until `wall` seconds have gone by."""
