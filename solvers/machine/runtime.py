@@ -62,8 +62,12 @@ def use_cores(most: int) -> None:
 
 def available_cores() -> int:
     """Cores this process may use."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(cores, _most_cores)
+    return min(cores_of_machine(), _most_cores)
+
+
+def cores_of_machine() -> int:
+    """Cores that this process and those beside it share."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def choose_arch(wanted: str, precision: str, water: bool = False, particles: int = 0) -> str:
@@ -76,7 +80,7 @@ def choose_arch(wanted: str, precision: str, water: bool = False, particles: int
     of other programs, too), so `water` has none. Raises Unavailable, one sentence, if the wanted arch is not there.
     """
     if wanted == "auto":
-        if particles < WORTH_DEVICE * available_cores():
+        if particles < WORTH_DEVICE * cores_of_machine():  # processes side by side have one device as well
             return "cpu"
         if _cuda():
             return "cuda"

@@ -225,7 +225,7 @@ def test_water_has_no_vulkan(monkeypatch):
     """A real device is passed over by auto; asked for, it is refused before anything is compiled."""
     monkeypatch.setattr(runtime, "_cuda", lambda: False)
     monkeypatch.setattr(runtime, "_real_vulkan", lambda: True)
-    many = runtime.WORTH_DEVICE * runtime.available_cores()
+    many = runtime.WORTH_DEVICE * runtime.cores_of_machine()
     assert runtime.choose_arch("auto", "f32", water=True, particles=many) == "cpu"
     assert runtime.choose_arch("auto", "f32", particles=many) == "vulkan"
     with pytest.raises(Unavailable, match=r"^run\.arch: Taichi cannot compile water for vulkan; use cuda or cpu\.$"):
@@ -235,11 +235,14 @@ def test_water_has_no_vulkan(monkeypatch):
 def test_a_device_is_taken_for_many_particles_only(monkeypatch):
     """Or if it is asked for: a small run waits for it longer than for the processor."""
     monkeypatch.setattr(runtime, "_cuda", lambda: True)
-    monkeypatch.setattr(runtime, "available_cores", lambda: 4)
+    monkeypatch.setattr(runtime, "cores_of_machine", lambda: 4)
+    monkeypatch.setattr(runtime, "_most_cores", 2**31)
     few = 4 * runtime.WORTH_DEVICE - 1
     assert [runtime.choose_arch("auto", "mixed", particles=count) for count in (0, few, few + 1)] == [
         "cpu",
         "cpu",
         "cuda",
     ]
+    runtime.use_cores(1)  # as in one of several processes
+    assert runtime.choose_arch("auto", "mixed", particles=few) == "cpu"
     assert runtime.choose_arch("cuda", "mixed") == "cuda"
