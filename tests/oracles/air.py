@@ -161,7 +161,11 @@ class PlainBoth(PlainWater):
             s = np.where(spray, np.maximum(s, self.least), s)
         loose = np.clip((np.where(wet, 0.93, 0.5) - full) / 0.05, 0.0, 1.0)
         share = 1.0 - 1.0 / (1.0 + loose * dt * self.water.sound_speed / self.water.length)
-        return s - np.where(wet, share * (s - rest), loose * np.maximum(s - np.maximum(rest, before), 0.0))
+        air = self.water.air
+        borne = self.water.background / (air.density * air.sound_speed**2)
+        thinnest = (1.0 - 1.4 * borne) ** (1.0 / 1.4) - 1.0 if air.density < LIGHT * self.water.density else -1.0
+        squeezed, stretched = np.maximum(s - np.maximum(rest, before), 0.0), np.minimum(s - thinnest, 0.0)
+        return s - np.where(wet, share * (s - rest), loose * squeezed + share * stretched)
 
     def rates(self, r, u, s, mass, slope, pressed):
         """Rates of s in the middle of a step, by the particles and by the walls."""

@@ -27,8 +27,11 @@ class Dispersed:
     most, or to the density at which p_a ((ρ/ρ_a)^1.4 − 1) is the water's pressure (own derivation).
 
     Nor does air lighter than LIGHT bear more suction than the background's pressure: beyond that particles
-    attract each other, and a void that a few are to fill throws them about (Monaghan 2000). `rest` is the excess of
-    density s with the pressure of the other phase. Water that touches no air is in a void, and bears nothing.
+    attract each other, and a void that a few are to fill throws them about (Monaghan 2000). A bubble that is drawn out
+    further relaxes to the density that bears it, where its elastic energy with the background's is least: the water
+    does not feel more, and a particle along a wall was drawn out to −49 kPa among water of 0.7 kPa, whose energy came
+    from nothing. `rest` is the excess of density s with the pressure of the other phase. Water that touches no air is
+    in a void, and bears nothing.
 
     Limits: drops and bubbles of up to four spacings; not with tension, whose drops are to be resolved, nor cohesion.
 
@@ -74,6 +77,11 @@ class Dispersed:
 
     @ti.func
     def off(self, b, s, after, loose, share):
-        """What excesses of density `s`, which are `after` a step, are to lose: water a share, air what is too much."""
+        """What excesses of density `s`, which are `after` a step, are to lose: water a share, air what is too much.
+
+        Air that is stretched beyond what it bears gets a share of what it lacks to that.
+        """
         rest, gas = self.particles.load(self.rest, b), self.particles.load(self.particles.gas, b)
-        return (1.0 - gas) * share * (after - rest) + gas * loose * ti.max(after - ti.max(rest, s), 0.0)
+        squeezed, thinnest = ti.max(after - ti.max(rest, s), 0.0), self.constants.get("air_thinnest")
+        stretched = ti.min(after - thinnest, 0.0)
+        return (1.0 - gas) * share * (after - rest) + gas * (loose * squeezed + share * stretched)

@@ -3,11 +3,13 @@
 from dataclasses import replace
 
 from solvers.fluid.given import Water
+from solvers.fluid.phases.adiabatic import Adiabatic
 from solvers.fluid.phases.dispersed import ALONE, LIGHT
 from solvers.fluid.phases.interfaces import INTERFACES
 from solvers.fluid.phases.reduced import Reduced
 
 UNBOUNDED = 1e20  # Pa
+TORN = 0.5  # of ρ_a c²: suction that air is said to bear at most; its vacuum is at 1/1.4
 CONTRACTED = 0.6  # discharge coefficient of a sharp-edged opening
 FASTEST = 0.5, 2.0  # Mach numbers of water and air at which a run is stopped: impacts squeeze air out
 
@@ -25,6 +27,7 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
     air, own = water.air, numbers["strength"]
     alone = replace(water, density=air.density, sound_speed=air.sound_speed, alpha=air.alpha, kinematic=air.kinematic)
     strength, stiffness = viscosity.strength(alone), air.density * air.sound_speed**2
+    light = air.density < LIGHT * water.density
     lean_of_pressure, lean_of_speed = INTERFACES[air.interface].leans(water.density, air.density)
     return {
         "air_density": air.density,
@@ -35,7 +38,8 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "hydrostatic": Reduced.weight(water, gravity) / water.sound_speed**2,
         "air_hydrostatic": (gravity if air.reduced is None else 0.0) / air.sound_speed**2,
         "air_packed": ALONE,
-        "least": 0.0 if air.density < LIGHT * water.density else -UNBOUNDED,  # Pa, with the background's
+        "least": 0.0 if light else -UNBOUNDED,  # Pa, with the background's
+        "air_thinnest": float(Adiabatic.excess(-min(water.background / stiffness, TORN))) if light else -1.0,
         "air_keeping": numbers["keeping"] * air.sound_speed / water.sound_speed,
         "air_hard": FIRMER * numbers["hard"] * stiffness / numbers["stiffness"],
         "lean_of_pressure": lean_of_pressure,

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Air, Gauge, Level, Water
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Air, Gauge, Level, Water, Z
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.timestep import kinematic
@@ -131,6 +131,22 @@ def test_a_gauge_at_the_surface_does_not_show_the_background(pool):
         run.advance(round(0.02 * step / run.dt) - run.steps)
         shown.append(run.observe()["gauge_pressure"][0])
     assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
+
+
+def test_a_bubble_of_one_particle_does_not_stay_stretched(pool):
+    """Drawn out to twice its volume in the middle of the water it bears no more than the background within 5 h/c0."""
+    made, middle = scene(background=40.0), np.array([0.0, 0.5 * DEPTH])
+    made.drops[0, np.linalg.norm(made.drops[0, :, :2] - middle, axis=1).argmin(), [GAS, EXCESS]] = 1.0, -0.5
+    made.drops = made.drops[:, np.argsort(made.drops[0, :, GAS], kind="stable")]
+    run, (z, gas) = again(pool, made), made.drops[0, :, [Z, GAS]]
+    before = run.observe()["water_diffusive"][0]
+    run.advance(round(5.0 / run.water.constants.numbers["relief"] / run.dt))
+    p = run.water.particles
+    (excess,) = (values[0] for values in p.read(p.excess))
+    (alone,) = np.flatnonzero((gas > 0.5) & (z < DEPTH))
+    least = 40.0 / (1.2 * run.scene.water.air.sound_speed**2)
+    assert excess[alone] == pytest.approx((1.0 - 1.4 * least) ** (1.0 / 1.4) - 1.0, abs=0.02)
+    assert run.observe()["water_diffusive"][0] > before
 
 
 def test_a_gauge_with_a_bubble_before_it_shows_the_waters_pressure(pool):
