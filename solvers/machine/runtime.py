@@ -23,9 +23,9 @@ from solvers.machine import address_space, compiling, kernel_cache, memory
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
-# Particles a core from which a graphics processor is faster: in its least time of a step, 0.3 ms, a core moves some
-# 1000 particles of water or 5000 grains.
-WORTH_DEVICE = 5000
+# Grains and particles of water a core that a core moves in 0.3 ms (20 ns and 0.3 µs each, Zen 4), the least time of a
+# step on a graphics processor (H200): from there on the device can be faster.
+WORTH_OF_GRAINS, WORTH_OF_WATER = 15_000, 1000
 KERNELS = 256 * 2**20  # bytes of compiled kernels kept; one of water takes 2 MB, and Taichi's 100 MiB are soon full
 
 
@@ -76,13 +76,15 @@ def choose_arch(wanted: str, precision: str, water: bool = False, particles: int
     """The arch to use: for "auto" CUDA, else a Vulkan GPU in hardware, else the CPU; otherwise the one `wanted`.
 
     A step on a graphics processor takes some 0.3 ms however few particles it moves, so "auto" takes one only for at
-    least WORTH_DEVICE `particles` a core, those of all worlds together. Taichi's Vulkan backend has no 64-bit
-    functions, so it serves f32 only. Software Vulkan is 5 to 8 times slower than the CPU, so it is used on request
-    only. It cannot compile the kernels of particles of water (Taichi 1.7.4; "Value does not yet exist", which is known
-    of other programs, too), so `water` has none. Raises Unavailable, one sentence, if the wanted arch is not there.
+    least WORTH_OF_GRAINS or WORTH_OF_WATER `particles` a core, those of all worlds together. Taichi's Vulkan backend
+    has no 64-bit functions, so it serves f32 only. Software Vulkan is 5 to 8 times slower than the CPU, so it is used
+    on request only. It cannot compile the kernels of particles of water (Taichi 1.7.4; "Value does not yet exist",
+    which is known of other programs, too), so `water` has none. Raises Unavailable, one sentence, if the wanted arch
+    is not there.
     """
     if wanted == "auto":
-        if particles < WORTH_DEVICE * cores_of_machine():  # processes side by side have one device as well
+        least = WORTH_OF_WATER if water else WORTH_OF_GRAINS
+        if particles < least * cores_of_machine():  # processes side by side have one device as well
             return "cpu"
         if _cuda():
             return "cuda"

@@ -1,5 +1,7 @@
 """The bench of graphics processors: what it allows for rounding, and the processor in the part of the device."""
 
+from threading import Lock
+
 import numpy as np
 import pytest
 
@@ -45,12 +47,13 @@ class Room:
     """A device with room for so many workers, which it counts."""
 
     def __init__(self, most: int) -> None:
-        self.most, self.held, self.made = most, 0, 0
+        self.most, self.held, self.made, self.door = most, 0, 0, Lock()
 
     def make(self) -> "Room":
-        if self.held == self.most:
-            raise LabError("no room is left.")
-        self.held, self.made = self.held + 1, self.made + 1
+        with self.door:
+            if self.held == self.most:
+                raise LabError("no room is left.")
+            self.held, self.made = self.held + 1, self.made + 1
         return self
 
     def close(self) -> None:

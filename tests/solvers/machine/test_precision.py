@@ -225,7 +225,7 @@ def test_water_has_no_vulkan(monkeypatch):
     """A real device is passed over by auto; asked for, it is refused before anything is compiled."""
     monkeypatch.setattr(runtime, "_cuda", lambda: False)
     monkeypatch.setattr(runtime, "_real_vulkan", lambda: True)
-    many = runtime.WORTH_DEVICE * runtime.cores_of_machine()
+    many = runtime.WORTH_OF_GRAINS * runtime.cores_of_machine()
     assert runtime.choose_arch("auto", "f32", water=True, particles=many) == "cpu"
     assert runtime.choose_arch("auto", "f32", particles=many) == "vulkan"
     with pytest.raises(Unavailable, match=r"^run\.arch: Taichi cannot compile water for vulkan; use cuda or cpu\.$"):
@@ -237,12 +237,10 @@ def test_a_device_is_taken_for_many_particles_only(monkeypatch):
     monkeypatch.setattr(runtime, "_cuda", lambda: True)
     monkeypatch.setattr(runtime, "cores_of_machine", lambda: 4)
     monkeypatch.setattr(runtime, "_most_cores", 2**31)
-    few = 4 * runtime.WORTH_DEVICE - 1
-    assert [runtime.choose_arch("auto", "mixed", particles=count) for count in (0, few, few + 1)] == [
-        "cpu",
-        "cpu",
-        "cuda",
-    ]
+    for water, least in ((False, runtime.WORTH_OF_GRAINS), (True, runtime.WORTH_OF_WATER)):
+        few = 4 * least - 1
+        chosen = [runtime.choose_arch("auto", "mixed", water, count) for count in (0, few, few + 1)]
+        assert chosen == ["cpu", "cpu", "cuda"]
     runtime.use_cores(1)  # as in one of several processes
     assert runtime.choose_arch("auto", "mixed", particles=few) == "cpu"
     assert runtime.choose_arch("cuda", "mixed") == "cuda"

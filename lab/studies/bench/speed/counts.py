@@ -31,9 +31,9 @@ PAIR = (
     Count("`ChosenLaws.forces`", 0, 1, REAL),
     # Overlaps that a kick begins and ends with 5, what is swept 3, spring and lag 4, damper 3, rise 3, cut 8; the lag.
     Count("`HertzViscoelastic.force`", 26, 2, REAL),
-    # Stiffness and cap 8, mean of the root 15, slip of the step 7, spring's force 10, dashpot and sum 9; the damper's
+    # Stiffness and cap 8, mean of the root 14, slip of the step 7, spring's force 10, dashpot and sum 9; the damper's
     # limit, the stiffening, three memories, read and written.
-    Count("`Mindlin.force`", 49, 2, 8 * REAL),
+    Count("`Mindlin.force`", 48, 2, 8 * REAL),
     Count("`Grains.push`, twice", 6, 0, 0),
 )
 GRAIN = (
