@@ -40,18 +40,19 @@ class Panels:
         return 0.5 * (self.start + self.end)
 
 
-def wet_panels(section: Section, heave: float, roll: float, count: int) -> Panels:
+def wet_panels(section: Section, heave: float, roll: float, count: int, halved: int = 0) -> Panels:
     """About `count` panels on the outline below calm water, distributed by length, with at least one per edge.
 
-    On each edge they have cosine spacing, densest at its ends, since the flow is singular at a sharp corner. Raises
-    `Unavailable` if the hull is dry.
+    On each edge they have cosine spacing, densest at its ends, since the flow is singular at a sharp corner. `halved`
+    is how often each of them is then cut in two, so that errors can be extrapolated. Raises `Unavailable` if the hull
+    is dry.
     """
     edges = section.wet_edges(heave, roll)
     if not len(edges):
         raise Unavailable("the hull does not touch the water: lower its heave.")
     ends = edges[..., 0] + 1j * edges[..., 1]
     length = np.abs(ends[:, 1] - ends[:, 0])
-    each = np.maximum(1, np.rint(count * length / length.sum())).astype(int)
+    each = np.maximum(1, np.rint(count * length / length.sum())).astype(int) << halved
     start, end = [], []
     for (first, last), n in zip(ends, each, strict=True):
         nodes = first + (last - first) * 0.5 * (1.0 - np.cos(np.pi * np.arange(n + 1) / n))

@@ -6,6 +6,10 @@ method of Frank 1967: the unknown stays finite at a sharp bilge). It has spuriou
 standing waves inside the hull (John 1950). Inside, the same integrals vanish; requiring this at points of the interior
 waterline, by least squares, removes the spurious solutions (Ohmatsu 1983).
 
+Errors fall as the square of the panels' lengths. So each table is solved twice, with panels and with their halves, and
+extrapolated to none (Richardson 1911). In roll they matter: its moment is what is left of forces that nearly cancel, and
+the corners of a bilge, where the flow is singular, have a large part in it.
+
 All quantities oscillate as Re (… e^(−iωt)). Waves of elevation Re a e^(i(ky−ωt)) travel to starboard (+y); their phase
 is taken at the y of the hull's origin. Modes are sway, heave and roll; roll is about a fixed point of the hull.
 """
@@ -75,16 +79,18 @@ def hydrodynamics(
 ) -> Hydrodynamics:
     """Coefficients of a hull at a mean heave (m) and roll (rad), about a point of its own frame.
 
-    With `count` panels errors fall about as count⁻². Raises `Unavailable` if frequencies or depth are out of range.
+    They are extrapolated from about `count`/2 and `count` panels. Raises `Unavailable` if frequencies or depth are out
+    of range.
     """
     frequency = np.asarray(frequency, dtype=float)
-    panels = wet_panels(section, heave, roll, count)
-    _check(panels, frequency, water)
-    inside = interior_points(section, heave, roll, len(panels.length))
     arm = turned(about, roll)
-    body = _Body(panels, inside, complex(arm[0], heave + arm[1]), water)
-    solved = [body.solve(omega) for omega in frequency]
-    return Hydrodynamics(frequency, *(np.array(rows) for rows in zip(*solved, strict=True)), body.infinite_added_mass())
+    coarse, fine = (wet_panels(section, heave, roll, count // 2, halved) for halved in (0, 1))
+    _check(coarse, frequency, water)
+    solved = []
+    for panels in (coarse, fine):
+        inside = interior_points(section, heave, roll, len(panels.length))
+        solved.append(_Body(panels, inside, complex(arm[0], heave + arm[1]), water).table(frequency))
+    return Hydrodynamics(frequency, *(fine + (fine - coarse) / 3.0 for coarse, fine in zip(*solved, strict=True)))
 
 
 class _Body:
@@ -97,6 +103,11 @@ class _Body:
         # Normal velocities of unit motion in each mode; for roll it is the moment of the normal.
         self.modes = np.stack([n.real, n.imag, arm.real * n.imag - arm.imag * n.real], axis=-1)
         self.weights = self.modes * panels.length[:, None]
+
+    def table(self, frequency: np.ndarray) -> list[np.ndarray]:
+        """What `solve` gives at each frequency (rad/s), and the added mass for ω → ∞."""
+        solved = zip(*(self.solve(omega) for omega in frequency), strict=True)
+        return [*map(np.array, solved), self.infinite_added_mass()]
 
     def solve(self, omega: float):
         """Added mass, damping, excitation, its Froude–Krylov part, and excitation by Haskind's relation."""

@@ -37,7 +37,7 @@ LOCKED = (False, False, True)
 def table():
     """The barge's, about the middle of its waterline."""
     frequency = np.concatenate([np.linspace(0.1, 12.0, 44), np.linspace(12.5, 30.0, 16)])
-    return hydrodynamics(BARGE, WATER, -DRAUGHT, frequency, about=AXIS, count=40)
+    return hydrodynamics(BARGE, WATER, -DRAUGHT, frequency, about=AXIS, count=80)
 
 
 @pytest.fixture(scope="module")
