@@ -32,10 +32,8 @@ GIVEN, FOUND, FRAMES = "pool.npz", "found.json", "frames.npz"
 SCRIPT = """\
 import json, resource, time
 import numpy as np
-from compyle.config import get_config
 pool = np.load("pool.npz")
 number = {name: float(pool[name]) for name in ("dx", "h", "rho0", "c0", "alpha", "g", "dt", "tf", "every", "threads")}
-get_config().use_openmp = number["threads"] > 1
 from pysph.base.kernels import WendlandQuintic
 from pysph.base.utils import get_particle_array
 from pysph.solver.application import Application
@@ -72,7 +70,8 @@ class Tank(Application):
 
 begun, frames = [], []
 app = Tank(fname="tank", output_dir="out")
-app.run(["--no-adaptive-timestep", "--max-steps", "1000000000", "--logfile", "log"])
+cores = ["--openmp"] if number["threads"] > 1 else []
+app.run(["--no-adaptive-timestep", "--max-steps", "1000000000", "--logfile", "log", *cores])
 after, end = time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF)
 count, t, before, use = begun
 busy = end.ru_utime + end.ru_stime - use.ru_utime - use.ru_stime
