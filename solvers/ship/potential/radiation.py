@@ -7,8 +7,8 @@ standing waves inside the hull (John 1950). Inside, the same integrals vanish; r
 waterline, by least squares, removes the spurious solutions (Ohmatsu 1983).
 
 Errors fall as the square of the panels' lengths. So each table is solved twice, with panels and with their halves, and
-extrapolated to none (Richardson 1911). In roll they matter: its moment is what is left of forces that nearly cancel, and
-the corners of a bilge, where the flow is singular, have a large part in it.
+extrapolated (Richardson 1911). In roll they matter: its moment is what is left of forces that nearly cancel, and the
+corners of a bilge, where the flow is singular, have a large part in it.
 
 All quantities oscillate as Re (… e^(−iωt)). Waves of elevation Re a e^(i(ky−ωt)) travel to starboard (+y); their phase
 is taken at the y of the hull's origin. Modes are sway, heave and roll; roll is about a fixed point of the hull.

@@ -2,13 +2,16 @@
 
 import sys
 from dataclasses import replace
+from importlib.resources import files
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from lab.assembly.hull_flow import Flow
 from lab.assembly.hull_tables import whole_form
+from lab.assembly.offsets import read_offsets
 from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.find import load
@@ -19,6 +22,7 @@ from solvers.ship.potential.radiation import hydrodynamics
 from solvers.ship.potential.strips import strips
 from solvers.ship.section import Section, box
 from solvers.ship.water import Water
+from tests.oracles import s175
 from tests.oracles.presets import error_of
 
 WATER = Water()
@@ -160,6 +164,30 @@ def test_a_long_hull_is_her_section_in_roll_too(library):
     for of in (lambda one: one.damping[0].diagonal(), lambda one: np.abs(one.excitation[0])):
         short, long = (of(one)[1:4] for one in ends)
         assert (long - short) / (lengths[1] - lengths[0]) == pytest.approx(of(alone), rel=0.03)
+
+
+@pytest.fixture(scope="module")
+def lines():
+    """The S175's own lines."""
+    return read_offsets(Path(str(files("presets"))) / "ship" / "s175.csv")
+
+
+def test_lines_of_the_s175_have_her_hydrostatics(lines):
+    """Another program's of the same lines."""
+    found = lines.hydrostatics(9.5, Water(1025.0))
+    assert found.displacement == pytest.approx(s175.DISPLACEMENT, rel=2e-3)
+    assert (found.kb, found.km) == pytest.approx((s175.KB, s175.KM), rel=1e-3)
+    assert found.lcb == pytest.approx(s175.LCB, abs=0.1)
+
+
+def test_strips_of_the_s175_are_those_of_another_code(lines):
+    """Sway, heave and roll within 7 %, pitch and yaw 10 %: two codes of strips on the same lines."""
+    found = strips(lines, 9.5, Water(1025.0), s175.FREQUENCY, 9.55, 40)
+    for ours, theirs in ((found.added_mass, s175.ADDED_MASS), (found.damping, s175.DAMPING)):
+        over = ours.diagonal(axis1=1, axis2=2)[:, 1:] / 1e6 / theirs
+        assert over[:, :3] == pytest.approx(np.ones((4, 3)), abs=0.07)
+        assert over[:, 3:] == pytest.approx(np.ones((4, 2)), abs=0.1)
+    assert np.abs(found.excitation[:, 1:3]) / 1e6 == pytest.approx(s175.FORCE, rel=0.025)
 
 
 @pytest.mark.slow

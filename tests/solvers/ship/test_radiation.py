@@ -268,9 +268,7 @@ def test_roll_of_a_hull_with_bilges_needs_no_more_than_eighty_panels():
     half = [(5.37, 0.0), (6.85, 1.48), (6.85, 7.5)]
     hull = Section(np.array([*half, *((-y, z) for y, z in half[::-1])]))
     omega = 1.1 * np.sqrt(WATER.gravity / 4.0)
-    found = [
-        hydrodynamics(hull, WATER, -4.0, [omega], about=(0.0, 3.75), count=n).damping[0, 2, 2] for n in (80, 320)
-    ]
+    found = [hydrodynamics(hull, WATER, -4.0, [omega], about=(0.0, 3.75), count=n).damping[0, 2, 2] for n in (80, 320)]
     assert found[0] == pytest.approx(found[1], rel=5e-3)  # 2.7 % too little without extrapolation
 
 
