@@ -20,7 +20,7 @@ class Level:
     restitution: float  # largest relative error
     beyond: str  # what else is known of its error
     layers: int  # of particles over the depth of water, unless water.spacing is given
-    of_water: str  # most errors of gentle water with so many layers or with 60: `cargolab verify water`
+    of_water: str  # most errors of gentle water with so many layers: `cargolab bench water levels`
 
     @property
     def error(self) -> str:
