@@ -2,7 +2,7 @@
 
 Added mass (4, 5) in kt and kt m², damping (4, 5) in kt/s and kt m²/s, in sway, heave, roll, pitch and yaw about her
 centre of gravity, 9.55 m over the keel, at angular frequencies (4,) in rad/s; force in waves from abeam (4, 2) in MN/m,
-sway and heave. Github.com/cybergalactic/MSS, HYDRO/vessels_shipx/s175/s175.mat, speed 0.
+sway and heave. From github.com/cybergalactic/MSS, HYDRO/vessels_shipx/s175/s175.mat, speed 0.
 """
 
 import numpy as np

@@ -1,5 +1,6 @@
 """Radiation and diffraction against published limits, multipoles, and the relations of energy and reciprocity."""
 
+from functools import partial
 from math import inf, pi, tanh
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.special import exp1
 from solvers.machine.errors import Unavailable
 from solvers.ship.hydrostatics import Loading, stiffness, surface_force
 from solvers.ship.potential import radiation
+from solvers.ship.potential.panels import wet_panels
 from solvers.ship.potential.radiation import hydrodynamics
 from solvers.ship.section import Section, box
 from solvers.ship.water import Water
@@ -115,10 +117,25 @@ def test_a_circle_agrees_with_ursells_multipoles(number):
         assert found.damping[0, k, k] / (scale * omega) == pytest.approx(damping, abs=4e-3)
 
 
-def test_a_circle_turning_about_its_centre_radiates_nothing():
-    found = hydrodynamics(circle(0.2, 256), WATER, 0.0, [3.0, 8.0], count=256)
+@pytest.fixture
+def alone(monkeypatch):
+    """Panels as they are: both solutions have `count` of them, so that nothing is extrapolated."""
+    monkeypatch.setattr(radiation, "wet_panels", lambda *at_and_count, halved=0: wet_panels(*at_and_count))
+    return lambda solve, count: solve(count=2 * count)
+
+
+def test_a_circle_turning_about_its_centre_radiates_nothing(alone):
+    found = alone(partial(hydrodynamics, circle(0.2, 256), WATER, 0.0, [3.0, 8.0]), 128)
     for table in (found.added_mass, found.damping):
-        assert np.abs(table[:, 2]).max() < 1e-4 * np.abs(table).max()  # its sides are straight, and push a little
+        assert np.abs(table[:, 2]).max() < 1e-8 * np.abs(table).max()
+
+
+def test_sides_of_a_turning_polygon_push_as_the_square_of_their_number():
+    """Halves of a straight side do not face the centre, so that extrapolated tables have what a polygon radiates."""
+    found = [hydrodynamics(circle(0.2, n), WATER, 0.0, [3.0], count=n) for n in (64, 128)]
+    few, many = (np.abs(one.damping[:, 2, 0]).max() / one.damping.max() for one in found)
+    assert few < 1e-3
+    assert many == pytest.approx(few / 4.0, rel=0.1)
 
 
 WATERS = {"deep": WATER, "0.5 m": Water(depth=0.5), "0.15 m": Water(depth=0.15)}
@@ -251,6 +268,16 @@ def test_irregular_frequencies_are_removed(monkeypatch):
     assert roughness(with_points.added_mass[:, 0, 0]) < 1e-6
     monkeypatch.setattr(radiation, "interior_points", lambda *_: np.empty(0, complex))
     assert roughness(barge(frequency).added_mass[:, 1, 1]) > 1e-3
+
+
+def test_second_order_in_the_panels(alone):
+    """Differences between successive doublings fall fourfold."""
+    tables = [
+        np.concatenate([t.added_mass.ravel(), t.damping.ravel()])
+        for t in (alone(partial(barge, [6.0]), n) for n in (30, 60, 120))
+    ]
+    coarse, fine = np.linalg.norm(tables[1] - tables[0]), np.linalg.norm(tables[2] - tables[1])
+    assert 3.0 < coarse / fine < 5.5
 
 
 def test_extrapolation_takes_the_second_order_out():
