@@ -6,7 +6,7 @@ from math import inf, pi, sqrt
 
 import numpy as np
 
-from lab.assembly.hull_tables import hull_table_of
+from lab.assembly.hull_tables import hull_table_of, whole_form
 from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
 from lab.preset.sections import sea as seas
@@ -70,7 +70,8 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
     section, about = Section(given.corners), given.about
     mass = water.density * float(section.immersion(given.heave, 0.0).area)
     body = _body(given, section, mass, wet)
-    if metacentric_height(section, body.loading, water) <= 0.0:
+    more = _beyond_section(given, section, body, water)
+    if righting(section, body, water, more) <= 0.0:
         raise LabError("ship.gravity_height: so high she does not float upright; lower it.")
     waves = make_waves(sea, water)
     table = table_of(given, water, _frequencies(given, water, waves))
@@ -79,7 +80,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         rest, scattered = (given.heave, 0.0), given.excitation == "diffraction"
         load = floating_in_waves(section, water, about, waves, table, rest, scattered)
         if given.excitation == "wave-slope":
-            load = _by_slope(load, table, body)
+            load = _by_slope(load, table, righting(section, body, water, more))
     ship = Ship(
         body,
         load,
@@ -88,7 +89,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         free=ships.FREEDOM[given.freedom],
         gravity=water.gravity,
     )
-    ship = _with_rig(ship, given.rig)
+    ship = _with_springs(ship, given, more)
     if given.roll_period:
         one = table.at([2.0 * pi / given.roll_period])
         ship = replace(ship, body=inertia_for_roll(ship, section, water, given.heave, one))
@@ -121,20 +122,41 @@ def _body(given: ships.Ship, section: Section, mass: float, wet: Body) -> Body:
     return bolted(Body(own, centre, own * gyradius**2), wet)
 
 
-def _by_slope(load: Floating, table, body: Body) -> Floating:
+def _by_slope(load: Floating, table, righting: float) -> Floating:
     """Replace the Froude–Krylov roll moment by W GM ∂ζ/∂y: eq. 7.1 of Spandonidis (2016) with r = 1."""
-    righting = body.mass * load.water.gravity * metacentric_height(load.section, body.loading, load.water)
     change = np.zeros_like(load.excess)
     change[:, 2] = 1j * load.waves.wave_number * righting - table.at(load.waves.frequency).froude_krylov[:, 2]
     return replace(load, excess=load.excess + change)
 
 
-def _with_rig(ship: Ship, given: ships.Rig) -> Ship:
+def righting(section: Section, body: Body, water: Water, more: np.ndarray) -> float:
+    """Righting moment per radian of a small heel (N), W GM, with what the whole hull has `more` (see below)."""
+    return body.mass * water.gravity * metacentric_height(section, body.loading, water) + float(more[2])
+
+
+def _beyond_section(given: ships.Ship, section: Section, body: Body, water: Water) -> np.ndarray:
+    """What a whole hull's stiffness in sway, heave and roll (3,) has beyond her section's, per metre of her length.
+
+    N/m², N/m² and N per rad, of small motions: ρ g (A_wp/L − b) and W (KM − KM of the section).
+    """
+    if given.offsets is None:
+        return np.zeros(3)
+    whole = whole_form(given).hydrostatics(given.draught, water)
+    breadth = float(section.waterplane(given.heave, 0.0).breadth)
+    above = body.centre[1] - float(given.corners[:, 1].min())
+    higher = whole.km - above - metacentric_height(section, body.loading, water)
+    plane = water.density * (whole.waterplane / given.length - breadth)
+    return water.gravity * np.array([0.0, plane, body.mass * higher])
+
+
+def _with_springs(ship: Ship, given: ships.Ship, more: np.ndarray) -> Ship:
+    """The ship with the rig's springs, and those that stand for what her whole hull has `more` than her section."""
+    one = given.rig
     rig = Rig(
-        np.array([given.sway_mass, given.heave_mass, 0.0]),
-        np.array([given.sway_damping, given.heave_damping, 0.0]),
-        np.array([given.sway_spring, 0.0, 0.0]),
-        np.array([ship.about[0], 0.0, 0.0]),
+        np.array([one.sway_mass, one.heave_mass, 0.0]),
+        np.array([one.sway_damping, one.heave_damping, 0.0]),
+        np.array([one.sway_spring, 0.0, 0.0]) + more,
+        np.array([ship.about[0], given.heave + ship.about[1], 0.0]),
     )
     return replace(ship, rig=rig)
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from math import pi
 
-from lab.assembly.ship import flooding_angles
+from lab.assembly.ship import flooding_angles, righting
 from lab.base.errors import LabError
 from lab.measures import ship_grain, ship_unevenness
 from lab.measures.ship import has_ship, vessel_of
@@ -14,7 +14,6 @@ from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording
-from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.naval import trimming
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
@@ -33,7 +32,7 @@ def describe(
     """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
-    height = metacentric_height(ship.load.section, body.loading, water)
+    height = righting(ship.load.section, body, water, ship.rig.spring) / (body.mass * water.gravity)
     floats = f"{body.mass:.4g} kg/m, GM solid {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
     rows = [("empty", floats)]
     if slab is not None:
