@@ -101,7 +101,10 @@ class Ship:
     offsets: Annotated[
         Table | None,
         Columns(OFFSETS, most=MOST_OFFSETS),
-        Doc("A CSV file of her hull's offsets; without it her hull is a prism, her section all along `length`."),
+        Doc(
+            "A CSV file of her hull's offsets, whose waterline also sets her stiffness in small heave and roll; "
+            "without it her hull is a prism, her section all along `length`."
+        ),
     ] = None
     excitation: Annotated[
         Literal["diffraction", "froude-krylov", "wave-slope"], Doc("How the waves that meet her act on her.")
