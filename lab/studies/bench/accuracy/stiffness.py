@@ -69,5 +69,6 @@ def _figure(tilted: list[Point], swayed: list[Point]) -> Figure:
     draw_bars(right, _scales(swayed), swayed, "response_amplitude_z", (VERMILION, "z"))
     for axes, quantity in ((left, "angle (deg)"), (right, "response to the sway (mm)")):
         axes.set(xscale="log", xlabel="stiffness scale", ylabel=quantity)
+        axes.set_ylim(bottom=0.0)  # leaves room for the legend
         axes.legend()
     return figure
