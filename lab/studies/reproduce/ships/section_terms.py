@@ -4,7 +4,7 @@ There are no grains: the hull alone, free in sway, heave and roll, as in the pre
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from math import inf, pi, sqrt
 
@@ -266,7 +266,7 @@ def _slower(model: Model) -> Model:
 
 def _wide(model: Model) -> Model:
     share, table = WIDTH / LENGTH, model.table
-    scaled = {name: share * getattr(table, name) for name in vars(table) if name != "frequency"}
+    scaled = {one.name: share * getattr(table, one.name) for one in fields(table) if one.name != "frequency"}
     return replace(model, table=replace(table, **scaled))
 
 
