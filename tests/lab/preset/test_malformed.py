@@ -163,7 +163,8 @@ KEYS = sorted(key for key, _ in walk(Preset))
 often = pytest.mark.parametrize("times", [1, pytest.param(50, marks=pytest.mark.slow)])
 
 
-SHIPS = [name for name in names() if name.startswith("ship/")][1:]  # one is enough: their tables take a second each
+ONE = "ship/anti-roll-tank"
+SHIPS = [name for name in names() if name.startswith("ship/") and name != ONE]  # their tables take a second each
 
 
 def examples(number: int) -> settings:
