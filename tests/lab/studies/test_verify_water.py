@@ -208,3 +208,10 @@ def test_references_of_water_and_air():
     assert bubbles.roundness(grid[np.hypot(*grid.T) < 0.2], 0.01) == pytest.approx(1.0, abs=0.02)
     long = grid[np.hypot(grid[:, 0] / 0.28, grid[:, 1] / 0.14) < 1.0]
     assert bubbles.roundness(long, 0.01) == pytest.approx(0.917, abs=0.03)  # an ellipse of 2 to 1, by Ramanujan
+
+
+def test_limit_and_order_of_three_spacings():
+    """Of a value that goes as a limit and a power of the spacing they are that limit and power."""
+    for power in (0.5, 1.0, 2.0):
+        values = [0.62 + 0.3 * (1.0 / count) ** power for count in orifice.ACROSS]
+        assert orifice.converged(values) == pytest.approx((0.62, power))

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lab.studies.case import Case, Found, Line
-from lab.studies.verify.water.scenes import LATTICE, G, errors_note, looks, order_line, scene, seen, simulated
+from lab.studies.verify.water.scenes import G, errors_note, looks, scene, seen, simulated
 from solvers.fluid.given import VOLUME, Water
 from solvers.fluid.start.rest import at_rest
 
@@ -119,6 +119,16 @@ def emptied(across: int) -> Outflow:
     return Outflow(*np.array(found).T)
 
 
+def converged(values: list[float]) -> tuple[float, float]:
+    """Limit and order of three values at spacings that are halved twice (Roache 1998, section 5.10).
+
+    Not of their errors: free streamlines without gravity are not the limit of a jet with it.
+    """
+    coarse, middle, fine = values
+    order = float(np.log2((coarse - middle) / (middle - fine)))
+    return fine + (fine - middle) / (2.0**order - 1.0), order
+
+
 def outflow(_: bool) -> Found:
     """A slot in the middle of the floor, a sixth of its width, under five to seven times its width of water."""
     runs, exact = [emptied(count) for count in ACROSS], discharge()
@@ -128,12 +138,14 @@ def outflow(_: bool) -> Found:
         "Speed of the jet": [run.pace - 1.0 for run in runs],
         "Time of emptying": [run.lasting / wanted - 1.0 for run in runs],
     }
-    best, spacings = runs[-1], [SLOT / count for count in ACROSS]
+    best, (limit, order) = runs[-1], converged([run.coefficient for run in runs])
+    blurred = "kernels blur a sharp edge over h"
     lines = [
         Line("C_d of the slot", best.coefficient, exact, "free streamlines", ASKED, WHY),
         Line("speed of the jet, of √(2g(h − z))", best.pace, 1.0, "no losses", ASKED, WHY),
         Line("time of emptying", best.lasting, wanted, "the law of emptying", ASKED, WHY, "s"),
-        *order_line("C_d", spacings, errors["C_d"], LATTICE),
+        Line("C_d as the spacing goes to nothing", limit, exact, "free streamlines", ASKED, "gravity in the jet, b/h"),
+        Line("order in which C_d converges", order, 1.0, blurred, 0.5, "three spacings", relative=False),
     ]
     notes = [note for what, each in errors.items() for note in errors_note(what, ACROSS, "spacings in the slot", each)]
     return Found(lines, notes=notes)
