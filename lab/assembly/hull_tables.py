@@ -1,10 +1,11 @@
 """Hydrodynamic tables of whole hulls, per metre of the ship's length: by strips, or in space by Capytaine.
 
 In space the table is of the hull's mesh up to FINEST √(g/draught), with panels along her an eighth of the shortest wave
-there, and more around her, where roll asks for them (`potential.mesh`).
-Above, where waves are short beside the hull and strips are exact in the limit, damping and excitation are those of
-strips, and added mass is theirs less their limit at infinite frequency plus that in space. What is left of the
-difference where they join falls with the fourth power of the frequency.
+there, and more around her, where roll asks for them (`potential.mesh`); it is extrapolated from these and half as many
+around her (Richardson 1911), whose error is of second order. Above, where waves are short beside the hull and strips
+are exact in the limit, damping and excitation are those of strips, and added mass is theirs less their limit at
+infinite frequency plus that in space. What is left of the difference where they join falls with the fourth power of
+the frequency.
 
 Limits: roll, a small difference of large pressures, is the least exact; Haskind's relation as `cargolab hydrodynamics`
 prints it tells of waves that are badly resolved, less of bilges that are.
@@ -26,8 +27,8 @@ from solvers.ship.naval import form as forms
 from solvers.ship.naval.form import Form, prism
 from solvers.ship.potential import mesh as meshes
 from solvers.ship.potential import strips as by_strips
-from solvers.ship.potential.mesh import hull_mesh
-from solvers.ship.potential.radiation import Hydrodynamics
+from solvers.ship.potential.mesh import BETWEEN, hull_mesh
+from solvers.ship.potential.radiation import Hydrodynamics, extrapolated
 from solvers.ship.potential.strips import abeam, strips
 from solvers.ship.section import Section
 from solvers.ship.water import Water
@@ -91,8 +92,11 @@ def _in_space(form: Form, draught: float, water: Water, frequency: np.ndarray, h
         raise LabError("ship.hydrodynamics: all waves are too short for a mesh of the hull; take strips.")
     widest = max(float(one.outline[:, 0].max()) for one in form.sections if one is not None)
     size = max(PANEL * draught, sqrt(float(np.ptp(form.x)) * widest / MOST_PANELS))
-    flow = hull_flow.Flow(hull_mesh(form, draught, size), height - draught, water)
-    low = flow.table(solved)
+    tables = []
+    for between in (BETWEEN // 2, BETWEEN):
+        mesh = hull_mesh(form, draught, size, between)
+        tables.append(hull_flow.Flow(mesh, height - draught, water).table(solved))
+    low = extrapolated(*tables)
     if len(solved) == len(frequency):
         return low
     high = _by_strips(form, draught, water, frequency[len(solved) - 1 :], height)

@@ -18,7 +18,7 @@ is taken at the y of the hull's origin. Modes are sway, heave and roll; roll is 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf
 
@@ -89,11 +89,18 @@ def hydrodynamics(
     arm = turned(about, roll)
     coarse, fine = (wet_panels(section, heave, roll, count // 2, halved=halved) for halved in (0, 1))
     _check(coarse, frequency, water)
-    solved = []
+    tables = []
     for panels in (coarse, fine):
         inside = interior_points(section, heave, roll, len(panels.length))
-        solved.append(_Body(panels, inside, complex(arm[0], heave + arm[1]), water).table(frequency))
-    return Hydrodynamics(frequency, *(fine + (fine - coarse) / 3.0 for coarse, fine in zip(*solved, strict=True)))
+        body = _Body(panels, inside, complex(arm[0], heave + arm[1]), water)
+        tables.append(Hydrodynamics(frequency, *body.table(frequency)))
+    return extrapolated(*tables)
+
+
+def extrapolated(coarse: Hydrodynamics, fine: Hydrodynamics) -> Hydrodynamics:
+    """The limit of tables at the same frequencies, of panels and of halved ones, whose errors are of second order."""
+    pairs = {one.name: (getattr(coarse, one.name), getattr(fine, one.name)) for one in fields(fine)}
+    return replace(fine, **{name: b + (b - a) / 3.0 for name, (a, b) in pairs.items() if name != "frequency"})
 
 
 class _Body:
