@@ -93,7 +93,8 @@ def test_a_jet_through_a_slot_of_four_spacings_levels_two_basins():
 def test_a_drop_falls_on_a_dry_floor():
     """It hits the floor at 2.4 m/s, breaks, and comes to rest on it, as deep as its mass is.
 
-    Sound is twenty times as fast as the drop: the jets along the floor reach five times its speed.
+    Sound is twenty times as fast as the drop: the jets along the floor reach five times its speed. Splashes fall back
+    until 3 s, some from the lid; how late hangs on rounding.
     """
     spacing, radius, height = 4e-3, 0.05, 0.35
     water = Water(spacing, 20.0 * np.sqrt(2.0 * GRAVITY * height))
@@ -102,10 +103,10 @@ def test_a_drop_falls_on_a_dry_floor():
     drop[:, 1] += height - radius
     outline = box(0.6, 0.6)
     scene = Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, water=water, drops=drop[None])
-    rows = course(scene, np.arange(1, 31) * 0.1)
+    rows = course(scene, np.arange(1, 61) * 0.1)
     deep = drop[:, VOLUME].sum() / 0.6
-    assert rows[-1]["water_centre"][0, 1] == pytest.approx(0.5 * deep, abs=0.4 * spacing)
-    assert rows[-1]["water_kinetic"][0] < 0.05 * rows[0]["water_total"][0]
+    assert rows[-1]["water_centre"][0, 1] == pytest.approx(0.5 * deep, abs=0.25 * spacing)
+    assert rows[-1]["water_kinetic"][0] < 0.01 * rows[0]["water_total"][0]
     assert np.abs(unaccounted(rows)[-1]) < 0.01
 
 
