@@ -138,7 +138,7 @@ def test_the_rate_follows_beverloos_law_in_a_plane(tmp_path):
     sizes = {"grains.diameter": "9, 6, 4 mm"}
     result = lab.sweep("funnel/discharge", sizes, tmp_path / "sweep", video=False, quiet=True, **given)
     diameter = np.array([9.0, 6.0, 4.0]) * 1e-3
-    rate = np.array([row["flow_rate"] for row in result.rows])
+    rate = np.array([row["flow_rate (1/s)"] for row in result.rows])
     scaled = (rate * np.pi / 4 * diameter**2 / np.sqrt(9.81 * diameter**3)) ** (2 / 3)
     slope, intercept = np.polyfit(2 * HALF / diameter, scaled, 1)
     np.testing.assert_allclose(scaled, slope * 2 * HALF / diameter + intercept, rtol=0.05)
