@@ -103,12 +103,13 @@ def check(name: str, fast: bool) -> Found:
         Line.off("load sideways, of the weight", "rest", best.sideways, 1e-3, "mean over the second half"),
         *order_line("the pressure, mean over the second half", spacings, [one.lasting for one in found], best.noise),
     ]
+    spread = [(one.lasting, one.noise) for one in found]
     shown = ", ".join(f"{100 * one.pressure:.2f} % and {one.stirred:.1e}" for one in found)
-    lasting = ", ".join(f"{100 * one.lasting:.2f} ± {100 * one.noise:.2f} %" for one in found)
+    lasting, noise = (", ".join(f"{100 * one:.2f} %" for one in each) for each in zip(*spread, strict=True))
     note = f"""{duration:g} s of rest with {", ".join(map(str, rows))} layers; the largest r.m.s. error of the pressure
     in the second half, of ρ g H, and the largest kinetic energy, of ρ g H V, from the first second on: {shown}. The
-    error of a particle is on average over the looks of the second half, and varies by ±, r.m.s. over the particles:
-    {lasting}. An order is told of these averages where that of the finest is more than it varies by."""
+    mean error of each particle over the looks of the second half is, r.m.s., {lasting}; it varies about that by
+    {noise}. An order is told of these means where that of the finest is more than it varies by."""
     return Found(lines, notes=[note])
 
 
