@@ -404,8 +404,8 @@ def test_results_stored_under_another_rule_are_not_verdicts(tmp_path):
         read_findings(tmp_path / "granular.json", experiments("granular"), False)
 
 
-def test_the_tolerance_of_one_bed_is_the_scatter_of_beds():
-    """The root of the mean squared standard deviations over all beds that were tilted for the report."""
+def test_the_tolerance_of_one_bed_is_no_more_than_the_scatter_of_beds():
+    """The root of the mean squared standard deviations over all beds that were tilted for the report, as is said."""
     kept = json.loads((ROOT / "renders" / "gallery" / "granular" / "granular.json").read_text())
     tilted = [row for name, finding in kept.items() if name.startswith("tilt-") for row in finding["rows"]]
     said = [row["ours"] for row in tilted if "after" not in row["quantity"]]
@@ -413,8 +413,10 @@ def test_the_tolerance_of_one_bed_is_the_scatter_of_beds():
     std, count = np.array(found, float).T
     scatter = np.sqrt(np.average(std**2, weights=count - 1))
     files = [tomllib.loads(path.read_text()) for path in FOLDER.glob("*.toml")]
-    said = {one["tolerance"]["one bed"]["within"] for one in files if "one bed" in one.get("tolerance", {})}
-    assert [*said] == [pytest.approx(scatter, abs=0.1)]
+    said = [one["tolerance"]["one bed"] for one in files if "one bed" in one.get("tolerance", {})]
+    ((within, origin),) = {(one["within"], one["origin"]) for one in said}
+    assert within < scatter + 0.1
+    assert float(re.search(r"now ([\d.]+),", origin)[1]) == pytest.approx(scatter, abs=0.1)
 
 
 def test_only_changes_of_a_presets_physics_require_a_new_run():

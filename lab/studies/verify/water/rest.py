@@ -42,7 +42,7 @@ class Rest:
 
     pressure: float  # root mean square of the errors of all particles, at the worst look
     lasting: float  # root mean square of the particles' mean errors over the looks
-    noise: float  # root mean square of what the errors vary by about these means
+    noise: float  # standard error of these means, root mean square over the particles
     gauge: float  # error of the gauge, likewise
     stirred: float  # largest kinetic energy at any look, from the first second on
     level: float  # error of the level in the middle
@@ -71,7 +71,7 @@ def rested(vessel: Vessel, rows: int, duration: float) -> Rest:
         level = rows_now["level_depth"][0, 0]
     half = len(loads) // 2
     load, gauge, late = np.mean(loads[half:], axis=0), max(gauged[half:], key=abs), np.array(errors[half:])
-    worst, lasting, noise = rms(late, 1).max(), rms(late.mean(0)), rms(late.std(0))
+    worst, lasting, noise = rms(late, 1).max(), rms(late.mean(0)), rms(late.std(0)) / np.sqrt(len(late))
     return Rest(worst, lasting, noise, gauge, max(kinetic), (level - deep) / DEPTH, -load[1], load[0])
 
 
@@ -108,8 +108,8 @@ def check(name: str, fast: bool) -> Found:
     lasting, noise = (", ".join(f"{100 * one:.2f} %" for one in each) for each in zip(*spread, strict=True))
     note = f"""{duration:g} s of rest with {", ".join(map(str, rows))} layers; the largest r.m.s. error of the pressure
     in the second half, of ρ g H, and the largest kinetic energy, of ρ g H V, from the first second on: {shown}. The
-    mean error of each particle over the looks of the second half is, r.m.s., {lasting}; it varies about that by
-    {noise}. An order is told of these means where that of the finest is more than it varies by."""
+    mean error of each particle over the looks of the second half is, r.m.s., {lasting}, with standard errors of
+    {noise}. Their order is told where the finest is above its standard error."""
     return Found(lines, notes=[note])
 
 
