@@ -105,15 +105,15 @@ def _soft_stride(preset: Preset, scene: Scene, wanted: float) -> int:
 def _step(preset: Preset, scene: Scene) -> float:
     """The step (s): as given, else derived, else the sampling interval, which it divides in any case."""
     limits, run, interval = scene.step_limits(), preset.run, 1.0 / preset.record.series_rate
-    wanted, longest = run.step, stretch(preset)
+    wanted, longest, usual = run.step, stretch(preset), scene.longest_step(LEVELS[run.accuracy].longer_steps)
     if run.step == "auto":
         scene.base_share = _base_share(scene, longest)
-        wanted = scene.base_share * scene.longest_step(LEVELS[run.accuracy].longer_steps)
+        wanted = scene.base_share * usual
         if scene.water and scene.water.air and scene.water.air.stiff_from > 0.0:
             scene.soft_stride = longest = _soft_stride(preset, scene, wanted)
             wanted = min(wanted, soft_limit(scene, LEVELS[run.accuracy].longer_steps) / longest)
     elif limits:
-        check_forced(wanted, limits[0].step, limits[0].reason, run.force_step)
+        check_forced(wanted, limits[0].step, usual, limits[0].reason, run.force_step)
     # Between two rows of the series lies a whole number of the longest steps, of grains and of water.
     count = longest * max(1, ceil(interval / (longest * wanted) - 1e-9))
     of_water = ceil(count / longest_pace(scene, interval / count))

@@ -44,13 +44,19 @@ DEFAULT = "standard"
 FURTHEST = 2.0
 
 
-def check_forced(step: float, derived: float, reason: str, force: bool) -> None:
-    """Raise LabError for a step (s) longer than the derived one if it is not forced or more than FURTHEST times it."""
-    limit = f"the limit of {show(derived, 's')} ({reason})"
+def check_forced(step: float, derived: float, usual: float, reason: str, force: bool) -> None:
+    """Raise LabError for a step (s) longer than the `usual` one of the level if it is not forced, or than what may be.
+
+    At most FURTHEST times the `derived` step, that of standard, may be forced.
+    """
     if step > FURTHEST * derived:
         raise LabError(
-            f"run.step: {show(step, 's')} is {step / derived:.3g} times {limit}, and the run would go wrong without a "
-            f"sign of it; leave it out, or force at most {FURTHEST:g} times the limit."
+            f"run.step: {show(step, 's')} is {step / derived:.3g} times the limit of {show(derived, 's')} ({reason}), "
+            f"and the run may go wrong without a sign of it; leave it out, or force at most {FURTHEST:g} times the limit."
         )
-    if step > derived and not force:
-        raise LabError(f"run.step: {show(step, 's')} is past {limit}; leave it out, or set run.force_step = true.")
+    if step > usual and not force:
+        stretched = "" if usual == derived else f", {usual / derived:.3g} times that at this accuracy"
+        raise LabError(
+            f"run.step: {show(step, 's')} is past the limit of {show(usual, 's')} ({reason}{stretched}); leave it out, "
+            "or set run.force_step = true."
+        )

@@ -140,7 +140,7 @@ def cautions(recording: Recording) -> Iterator[str]:
     if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
         yield rough
     if recording.preset.run.force_step:
-        yield "The step is forced past the derived one: restitution errs by some 2 % at five times that."
+        yield "The step is forced past the derived one: at twice that the restitution errs by up to 1 %."
     overlap = recording.series["overlap"].max(initial=0.0)
     if overlap > LARGE_OVERLAP:
         yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."

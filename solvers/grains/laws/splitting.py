@@ -45,6 +45,9 @@ def lagging(damping, share, velocity, lag, room):
     that the step also resolves the filter's stiffness (γ − γ_f)/T. The velocity stops within a few steps, and under a
     lasting load F it is F/γ, the creep of the law itself, whatever the step. A damper with γ < 0.2 m/Δt is not split.
 
+    A new load is followed within T = 50 γ Δt²/m. Until then the contact gives way by F T/γ = 50 F Δt²/m, like a spring:
+    beds of 6 mm grains at draft (35 µs, T = 0.06 s) shift by 0.02 mm until a tilt of 2 deg, 0.01 mm with 12 µs.
+
     The filter is for lasting loads. In a collision of a few tens of steps it would take up the slip before the contact
     sticks, and then drive it the other way. So friction laws give a `share` of zero until the contact has `settled`,
     and as `room` what γ_f leaves of the Coulomb cap (conditional integration, as in controllers).

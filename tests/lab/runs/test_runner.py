@@ -110,11 +110,22 @@ def test_the_recording_names_the_device(result):
 
 def test_a_step_above_the_limit_needs_force_and_one_far_above_is_refused():
     with pytest.raises(LabError, match=r"run\.step: .*past the limit.*force_step"):
-        build(load("tilting/quick", SMALL | {"run": {"step": "20 us"}}).resolved)
-    forced = SMALL | {"run": {"step": "20 us", "force_step": True}}
-    assert build(load("tilting/quick", forced).resolved)[0].step == pytest.approx(2e-5)
+        build(load("tilting/quick", SMALL | {"run": {"step": "29 us"}}).resolved)
+    forced = SMALL | {"run": {"step": "29 us", "force_step": True}}
+    assert build(load("tilting/quick", forced).resolved)[0].step == pytest.approx(2.9e-5, rel=0.01)
     with pytest.raises(LabError, match=r"run\.step: 1 ms is [\d.]+ times the limit.* at most 2 times"):
         build(load("tilting/quick", SMALL | {"run": {"step": "1 ms", "force_step": True}}).resolved)
+
+
+def test_a_step_up_to_that_of_its_level_needs_no_force():
+    """At draft steps are longer than at standard; one as long as draft's own is taken as it is, a longer one is not."""
+    draft = SMALL | {"run": {"accuracy": "draft"}}
+    own = build(load("tilting/quick", draft).resolved)[0].longest_step(1.6)
+    given = {"run": {"accuracy": "draft", "step": f"{0.99 * own} s"}}
+    assert 0.95 * own < build(load("tilting/quick", SMALL | given).resolved)[0].step < own
+    given["run"]["step"] = f"{1.1 * own} s"
+    with pytest.raises(LabError, match=r"past the limit.*1\.6 times that at this accuracy"):
+        build(load("tilting/quick", SMALL | given).resolved)
 
 
 @pytest.mark.slow
