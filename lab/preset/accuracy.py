@@ -52,7 +52,7 @@ def check_forced(step: float, derived: float, usual: float, reason: str, force: 
     if step > FURTHEST * derived:
         raise LabError(
             f"run.step: {show(step, 's')} is {step / derived:.3g} times the limit of {show(derived, 's')} ({reason}), "
-            f"and the run may go wrong without a sign of it; leave it out, or force at most {FURTHEST:g} times the limit."
+            f"and the run may go wrong unnoticed; leave it out, or force at most {FURTHEST:g} times the limit."
         )
     if step > usual and not force:
         stretched = "" if usual == derived else f", {usual / derived:.3g} times that at this accuracy"
