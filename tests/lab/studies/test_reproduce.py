@@ -25,7 +25,7 @@ from lab.measures.value import over_worlds
 from lab.preset.find import load
 from lab.report.kept import Made
 from lab.studies import reproduce as package
-from lab.studies.reproduce import experiments, report, reproduce, runs, workers
+from lab.studies.reproduce import experiments, registry, report, reproduce, runs, workers
 from lab.studies.reproduce.claims import FOLDER, read, reports
 from lab.studies.reproduce.estimates import Verdict, surely
 from lab.studies.reproduce.experiment import EXACT, Experiment, Row, Told, Tolerance, counted, observed, stated
@@ -317,6 +317,14 @@ def test_a_claim_with_a_word_or_a_name_that_is_not_known_is_refused(wrong):
 def test_a_claim_on_a_run_that_there_is_not_is_refused():
     with pytest.raises(ValueError, match="trial: there is no run C"):
         read(CLAIMS.replace('["B", "A"]', '["C", "A"]'))
+
+
+def test_a_number_of_a_claim_does_not_hide_a_measure_of_the_same_name():
+    """A claim names both alike, and what needs code comes first."""
+    files = Path(lab.measures.__file__).parent.glob("*.py")
+    named = {name for file in files for name in re.findall(r'"([a-z]\w*)":', file.read_text())}
+    assert {"critical_angle", "decay_frequency"} <= named
+    assert not named & set(registry.DERIVED)
 
 
 def test_columns_that_no_set_has_are_refused():

@@ -71,6 +71,6 @@ def figure(found: Found) -> Figure:
 
 
 NUMBERS = {
-    "decay_frequency": ("rad/s", lambda one, wanted: _swing(one, wanted)[0]),
-    "decay_damping": ("", lambda one, wanted: _swing(one, wanted)[1]),
+    "swing_frequency": ("rad/s", lambda one, wanted: _swing(one, wanted)[0]),
+    "swing_damping": ("", lambda one, wanted: _swing(one, wanted)[1]),
 }
