@@ -46,9 +46,9 @@ def lagging(damping, share, velocity, lag, room):
     lasting load F it is F/γ, the creep of the law itself, whatever the step. A damper with γ < 0.2 m/Δt is not split.
 
     A new load is followed within T = 50 γ Δt²/m. Until then the contact gives way by F T/γ = 50 F Δt²/m, like a spring:
-    beds of 6 mm grains settled and tilted at draft (35 µs, T = 0.06 s, or 0.2 s while grains are slow and steps doubled)
-    shift by 0.02 mm until 2 deg, with 12 µs by 0.01 mm. At what angle they slip does not show it (`cargolab bench
-    accuracy`).
+    beds of 6 mm grains settled and tilted at draft (35 µs, T = 0.06 s, or 0.2 s while grains are slow and steps
+    doubled) shift by 0.02 mm until 2 deg, with 12 µs by 0.01 mm. At what angle they slip does not show it (`cargolab
+    bench accuracy`).
 
     The filter is for lasting loads. In a collision of a few tens of steps it would take up the slip before the contact
     sticks, and then drive it the other way. So friction laws give a `share` of zero until the contact has `settled`,
