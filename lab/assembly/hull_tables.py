@@ -37,13 +37,13 @@ FINEST = 1.2  # √(g/draught): the highest frequency that is solved in space
 PANEL = 0.5  # of the draught: an eighth of the length of waves of that frequency is 0.55
 MOST_PANELS = 2500.0  # of the half hull, on its bottom
 FADING = 4.0  # power of the frequency with which the difference of hull and strips at the join falls
-SAME = 0.02  # of the displacement, by which section and hull may differ
+SAME = 0.02  # of the breadth, by which section and hull may differ
 OF_STRIPS = (*SOLVED_BY, by_strips, forms)
 IN_SPACE = (*OF_STRIPS, meshes, hull_flow, sys.modules[__name__])
 
 
 def whole_form(given: ships.Ship) -> Form:
-    """The ship's whole hull, heights from her keel. Raises LabError if it does not displace what she does."""
+    """The ship's whole hull, heights from her keel. Raises LabError if her section is not that of this hull."""
     section = Section(given.corners)
     if given.offsets is None:
         return prism(section, given.length)
@@ -51,12 +51,13 @@ def whole_form(given: ships.Ship) -> Form:
     form = from_offsets(*columns, name=f"ship.offsets: {given.offsets.name}")
     if form.depth < given.draught:
         raise LabError(f"ship.draught: must be less than the {show(form.depth, 'm')} of the hull in ship.offsets.")
-    volume = form.displaced(np.full(len(form.x), given.draught))[0]
-    area = float(section.immersion(given.heave, 0.0).area)
-    if abs(area * given.length / volume - 1.0) > SAME:
+    own = float(section.waterplane(given.heave, 0.0).breadth)
+    hers = max(float(one.waterplane(-given.draught, 0.0).breadth) for one in form.sections if one is not None)
+    if abs(own / hers - 1.0) > SAME:
+        key = "ship.breadth" if given.outline is None else "ship.outline"
         raise LabError(
-            f"ship.length: {show(given.length, 'm')} of her section displace {area * given.length:.5g} m³, the hull in "
-            f"ship.offsets {volume:.5g} m³; give {show(volume / area, 'm')}."
+            f"{key}: her section is {show(own, 'm')} wide in the waterline, the hull in ship.offsets "
+            f"{show(hers, 'm')}; draw the section amidships of that hull."
         )
     return form
 

@@ -20,7 +20,7 @@ from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, re
 from solvers.ship.openings import immersion_angle
 from solvers.ship.potential.memory import fit_memory
 from solvers.ship.potential.radiation import Hydrodynamics
-from solvers.ship.section import Section
+from solvers.ship.section import Immersible, Section, Stations
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random_sea, regular, white_noise
@@ -67,11 +67,10 @@ def make_vessel(
 
 
 def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) -> Vessel:
-    section, about = Section(given.corners), given.about
+    section, about = immersible(given), given.about
     mass = water.density * float(section.immersion(given.heave, 0.0).area)
     body = _body(given, section, mass, wet)
-    more = _beyond_section(given, section, body, water)
-    if righting(section, body, water, more) <= 0.0:
+    if righting(section, body, water) <= 0.0:
         raise LabError("ship.gravity_height: so high she does not float upright; lower it.")
     waves = make_waves(sea, water)
     table = table_of(given, water, _frequencies(given, water, waves))
@@ -80,7 +79,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         rest, scattered = (given.heave, 0.0), given.excitation == "diffraction"
         load = floating_in_waves(section, water, about, waves, table, rest, scattered)
         if given.excitation == "wave-slope":
-            load = _by_slope(load, table, righting(section, body, water, more))
+            load = _by_slope(load, table, righting(section, body, water))
     ship = Ship(
         body,
         load,
@@ -88,8 +87,8 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         about,
         free=ships.FREEDOM[given.freedom],
         gravity=water.gravity,
+        rig=_rig(given),
     )
-    ship = _with_springs(ship, given, more)
     if given.roll_period:
         one = table.at([2.0 * pi / given.roll_period])
         ship = replace(ship, body=inertia_for_roll(ship, section, water, given.heave, one))
@@ -111,7 +110,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
     )
 
 
-def _body(given: ships.Ship, section: Section, mass: float, wet: Body) -> Body:
+def _body(given: ships.Ship, section: Immersible, mass: float, wet: Body) -> Body:
     """Ship and cargo of a `mass` (kg/m) together. Raises Unavailable if the water is heavier."""
     gyradius, centre = given.gyradius or 0.3 * section.size, (0.0, given.gravity_height)
     if not given.bare:
@@ -129,36 +128,31 @@ def _by_slope(load: Floating, table, righting: float) -> Floating:
     return replace(load, excess=load.excess + change)
 
 
-def righting(section: Section, body: Body, water: Water, more: np.ndarray) -> float:
-    """Righting moment per radian of a small heel (N), W GM, with what the whole hull has `more` (see below)."""
-    return body.mass * water.gravity * metacentric_height(section, body.loading, water) + float(more[2])
+def righting(section: Immersible, body: Body, water: Water) -> float:
+    """Righting moment per radian of a small heel (N), W GM."""
+    return body.mass * water.gravity * metacentric_height(section, body.loading, water)
 
 
-def _beyond_section(given: ships.Ship, section: Section, body: Body, water: Water) -> np.ndarray:
-    """What a whole hull's stiffness in sway, heave and roll (3,) has beyond her section's, per metre of her length.
-
-    N/m², N/m² and N per rad, of small motions: ρ g (A_wp/L − b) and W (KM − KM of the section).
-    """
+def immersible(given: ships.Ship) -> Immersible:
+    """What floats: her section, or the stations of her whole hull if she has offsets, per metre of her length."""
     if given.offsets is None:
-        return np.zeros(3)
-    whole = whole_form(given).hydrostatics(given.draught, water)
-    breadth = float(section.waterplane(given.heave, 0.0).breadth)
-    above = body.centre[1] - float(given.corners[:, 1].min())
-    higher = whole.km - above - metacentric_height(section, body.loading, water)
-    plane = water.density * (whole.waterplane / given.length - breadth)
-    return water.gravity * np.array([0.0, plane, body.mass * higher])
+        return Section(given.corners)
+    form = whole_form(given)
+    keel = np.array([0.0, float(given.corners[:, 1].min())])
+    wet = [k for k, one in enumerate(form.sections) if one is not None]
+    sections = tuple(Section(form.sections[k].outline + keel) for k in wet)
+    return Stations(sections, form.weights[wet] / given.length)
 
 
-def _with_springs(ship: Ship, given: ships.Ship, more: np.ndarray) -> Ship:
-    """The ship with the rig's springs, and those that stand for what her whole hull has `more` than her section."""
+def _rig(given: ships.Ship) -> Rig:
+    """What holds her, at rest where she is."""
     one = given.rig
-    rig = Rig(
+    return Rig(
         np.array([one.sway_mass, one.heave_mass, 0.0]),
         np.array([one.sway_damping, one.heave_damping, 0.0]),
-        np.array([one.sway_spring, 0.0, 0.0]) + more,
-        np.array([ship.about[0], given.heave + ship.about[1], 0.0]),
+        np.array([one.sway_spring, 0.0, 0.0]),
+        np.array([given.about[0], given.heave + given.about[1], 0.0]),
     )
-    return replace(ship, rig=rig)
 
 
 def hull_table(given: ships.Ship, sea: seas.Sea, gravity: float) -> Hydrodynamics:

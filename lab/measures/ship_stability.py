@@ -93,7 +93,7 @@ def _with_level_water(preset: Preset, vessel: Vessel, heels: np.ndarray) -> np.n
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
-    """Righting lever of a ship's section against her heel, her cargo frozen as it lay at the start, or slid to repose.
+    """Righting lever of a ship against her heel, her cargo frozen as it lay at the start, or slid to repose.
 
     Upright lines: where the edge of her deck, and an opening, meet the still waterline at constant displacement.
     """
@@ -115,8 +115,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     axes.set_xlim(0, 180)
     axes.set_xticks(range(0, 181, 30))
     axes.set_xlabel("heel (deg)")
-    by = "" if recording.preset.ship.offsets is None else ", of her section"  # small motions have her whole hull's
-    axes.set_ylabel(f"righting lever GZ{by} (mm)")
+    axes.set_ylabel("righting lever GZ (mm)")
 
 
 FIGURES = {"lever": draw}

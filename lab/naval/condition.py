@@ -8,11 +8,13 @@ from math import inf
 import numpy as np
 
 from lab.assembly.grains import grain_count
+from lab.assembly.hull_tables import whole_form
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
 from lab.naval.free_surfaces import FreeSurface, free_surfaces
 from lab.preset.schema import Preset
 from lab.preset.sections.naval.stability import Stability
+from lab.preset.sections.ship import Ship
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE, Form, Hydrostatics, prism
@@ -48,7 +50,8 @@ class Condition:
 
     All lengths are `scale` times those of the preset; `gravity_height` is KG without free surfaces, whose moment (t m)
     is apart: `tanks`, as large as in the preset, are in it. G lies `aside` (m) of the middle, towards the `side` that
-    she is judged on. `repose` (rad) is the cargo's. `hold` and `cargo` are None without grain.
+    she is judged on. With `lines` her form is that of offsets, else of one section all along. `repose` (rad) is the
+    cargo's. `hold` and `cargo` are None without grain.
     """
 
     form: Form
@@ -64,6 +67,7 @@ class Condition:
     flooding: float | None
     length: float
     scale: float
+    lines: bool
     given: Stability
     repose: float
     hold: Hold | None = None
@@ -151,21 +155,21 @@ def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: 
     """
     ship, given, scale = preset.ship, preset.stability, preset.ship.scale or 1.0
     load = vessel.ship.load
-    section = Section(load.section.outline * scale)
+    length = (ship.length or 1.0) * scale
     try:
-        form = prism(section, (ship.length or 1.0) * scale)
+        form = _form(ship, scale)
         angles = flooding_angles(ship, vessel)
         hold, cargo = _stowed(preset, form, scale, level, mass)
     except Unavailable as error:
         raise LabError(f"stability: {error}") from None
-    keel = float(load.section.outline[:, 1].min())
+    keel = float(ship.corners[:, 1].min())
     body, tanks = vessel.ship.body, free_surfaces(preset)
     moment = given.free_surface + sum(tank.moment for tank in tanks)
     return Condition(
         form,
         load.water,
         ship.draught * scale,
-        body.mass * scale**2 * float(form.x[-1]) / TONNE,
+        body.mass * scale**2 * length / TONNE,
         (body.centre[1] - keel) * scale,
         abs(body.centre[0]) * scale,
         "port" if body.centre[0] < 0.0 else "starboard",
@@ -175,11 +179,21 @@ def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: 
         _angle(angles["downflooding_angle"], ship.flooding_points),
         (given.length or ship.length or 1.0) * scale,
         scale,
+        ship.offsets is not None,
         given,
         ship.repose,
         hold,
         cargo,
     )
+
+
+def _form(ship: Ship, scale: float) -> Form:
+    """Her whole hull `scale` times as large: by her offsets, or her section all along."""
+    if ship.offsets is None:
+        return prism(Section(ship.corners * scale), (ship.length or 1.0) * scale)
+    form = whole_form(ship)
+    sections = tuple(None if one is None else Section(one.outline * scale) for one in form.sections)
+    return Form(form.x * scale, sections)
 
 
 def _angle(found: float | None, points: tuple) -> float | None:

@@ -85,8 +85,9 @@ def unjudged(condition: Condition) -> Iterator[str]:
 def facts(condition: Condition) -> list[tuple[str, str]]:
     """The condition in rows of a name and a text."""
     h = condition.hydrostatics
+    of = "her lines" if condition.lines else "her section"
     rows = [
-        ("displacement", f"{condition.displacement:.5g} t, by {condition.form.perpendiculars:.5g} m of her section"),
+        ("displacement", f"{condition.displacement:.5g} t, by {condition.form.perpendiculars:.5g} m of {of}"),
         ("draught", f"{condition.draught:.4g} m, breadth {h.breadth:.4g} m, block coefficient {condition.block:.3f}"),
         ("KB, BM, KM", f"{h.kb:.3f}, {h.bm:.3f}, {h.km:.3f} m"),
         *_gravity(condition),

@@ -91,10 +91,12 @@ def _assumptions(recording: Recording, judged: bool) -> Iterator[str]:
         real = preset.grains.stands_for
         stands = f"many of {show(real, 'm')}: coarse grains" if real else "itself"
         yield f"Grains are spheres that move in the plane, or outlines of that mass; each grain stands for {stands}."
+    lines = preset.ship is not None and preset.ship.offsets is not None
+    hull = "has the lines of her offsets, on an even keel," if lines else "is a prism of one section"
     if preset.ship:
-        yield "The hull is a prism of one section in beam waves of linear theory, with viscous roll damping as given."
+        yield f"The hull {hull} in beam waves of linear theory, with viscous roll damping as given."
     if judged:
-        yield "Criteria are those of calm water; the levers of the whole ship are those of her section."
+        yield f"Criteria are those of calm water; levers are those of her {'lines' if lines else 'section'}."
         yield "As it lay farthest aside: the cargo's centre as the run's worst moment had it, as if it then lay still."
         yield SIGNS
 

@@ -32,7 +32,7 @@ def describe(
     """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
-    height = righting(ship.load.section, body, water, ship.rig.spring) / (body.mass * water.gravity)
+    height = righting(ship.load.section, body, water) / (body.mass * water.gravity)
     floats = f"{body.mass:.4g} kg/m, GM solid {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
     rows = [("empty", floats)]
     if slab is not None:

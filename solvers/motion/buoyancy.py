@@ -10,11 +10,12 @@ from solvers.motion.frame import turned
 from solvers.motion.harmonic import soft_start
 from solvers.ship.loads import Floating
 from solvers.ship.motion import Ship
+from solvers.ship.section import Immersible
 
 
 @ti.data_oriented
 class Hulls:
-    """Sections, waves and openings of W ships whose loads are `Floating`, padded to the largest numbers of these.
+    """Outlines, waves and openings of W ships whose loads are `Floating`, padded to the largest numbers of these.
 
     `openings`: points (m) of each hull through which it floods.
     """
@@ -22,7 +23,8 @@ class Hulls:
     def __init__(self, arrays: State, ships: Sequence[Ship], openings: Sequence[Sequence[tuple[float, float]]]):
         self.exact = arrays.exact
         loads = [ship.load for ship in ships]
-        self.corners = max(len(load.section.outline) for load in loads)
+        chains = [chain(load.section) for load in loads]
+        self.corners = max(len(shares) for _, shares in chains)
         self.waves = max(len(load.waves.amplitude) for load in loads)
 
         own = arrays.under("hull")
@@ -30,7 +32,8 @@ class Hulls:
         def table(name: str, values, axes: str) -> ti.Field:
             return own.holding(name, np.array(values, dtype=float), f"world {axes}", own.exact, kept=True)
 
-        self.outline = table("outline", [self._closed(load.section.outline) for load in loads], "corner direction")
+        self.outline = table("outline", [self._padded(corners) for corners, _ in chains], "corner direction")
+        self.share = table("share", [self._padded(shares) for _, shares in chains], "corner")
         self.pressure = table("pressure", [load.water.density * load.water.gravity for load in loads], "")
         self.about = table("about", [load.about for load in loads], "direction")
         self.openings = max(len(points) for points in openings)
@@ -66,9 +69,9 @@ class Hulls:
         for field, values in zip(fields, self._of_waves(loads), strict=True):
             field.from_numpy(np.array(values))
 
-    def _closed(self, outline: np.ndarray) -> np.ndarray:
-        """An outline padded with copies of its last corner, which add edges of zero length."""
-        return np.pad(outline, ((0, self.corners - len(outline)), (0, 0)), "edge")
+    def _padded(self, values: np.ndarray) -> np.ndarray:
+        """Values of corners padded with copies of the last, which add edges of zero length."""
+        return np.pad(values, ((0, self.corners - len(values)), *[(0, 0)] * (values.ndim - 1)), "edge")
 
     def _filled(self, values: np.ndarray) -> np.ndarray:
         whole = np.zeros((self.waves, *values.shape[1:]))
@@ -122,9 +125,10 @@ class Hulls:
         """Force and moment about P, `arm` (m) from the hull's origin; see `hydrostatics.buoyancy` and `section`."""
         area, moment = ti.cast(0.0, self.exact), ti.cast(0.0, self.exact)
         depth_moment = ti.cast(0.0, self.exact)
-        before = self.corner(w, self.corners - 1, heave, roll, elevation, slope)
-        for k in range(self.corners):
-            after = self.corner(w, k, heave, roll, elevation, slope)
+        cos, sin = ti.cos(roll), ti.sin(roll)
+        before = self.corner(w, 0, heave, cos, sin, elevation, slope)
+        for k in range(1, self.corners):
+            after = self.corner(w, k, heave, cos, sin, elevation, slope)
             y0, d0, y1, d1 = before[0], ti.max(before[1], 0.0), after[0], ti.max(after[1], 0.0)
             if (before[1] > 0.0) != (after[1] > 0.0):
                 crossing = y0 + before[1] / (before[1] - after[1]) * (y1 - y0)
@@ -132,7 +136,7 @@ class Hulls:
                     y1 = crossing
                 else:
                     y0 = crossing
-            along = y1 - y0
+            along = self.share[w, k] * (y1 - y0)
             area += 0.5 * along * (d0 + d1)
             moment += along / 6.0 * (y0 * (2.0 * d0 + d1) + y1 * (d0 + 2.0 * d1))
             depth_moment += along / 6.0 * (d0 * d0 + d0 * d1 + d1 * d1)
@@ -142,7 +146,15 @@ class Hulls:
         return self.pressure[w] * ti.Vector([-slope * area, area, lever_y + slope * lever_z])
 
     @ti.func
-    def corner(self, w, k, heave, roll, elevation, slope):
+    def corner(self, w, k, heave, cos, sin, elevation, slope):
         """A corner's y from the hull's origin and its depth below the surface (m)."""
-        place = turned(self.outline[w, k, 0], self.outline[w, k, 1], roll)
-        return ti.Vector([place[0], elevation + slope * place[0] - heave - place[1]])
+        along, up = self.outline[w, k, 0], self.outline[w, k, 1]
+        y, z = cos * along - sin * up, sin * along + cos * up
+        return ti.Vector([y, elevation + slope * y - heave - z])
+
+
+def chain(hull: Immersible) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (k, 2) m of a hull's outlines, each closed, and the share of the edge before each, 0 between outlines."""
+    closed = [np.concatenate([outline[-1:], outline]) for outline, _ in hull.outlines]
+    shares = [np.concatenate([[0.0], np.full(len(outline), share)]) for outline, share in hull.outlines]
+    return np.concatenate(closed), np.concatenate(shares)

@@ -8,7 +8,7 @@ import numpy as np
 
 from solvers.machine.errors import Unavailable
 from solvers.ship.hydrostatics import Loading, balanced_heave, righting_lever, turned
-from solvers.ship.section import Section
+from solvers.ship.section import Immersible, Section
 from solvers.ship.water import Water
 
 ONE = Water(density=1.0)  # a fluid in which a displaced area (m²) is the mass (kg/m)
@@ -44,7 +44,7 @@ def level_area(hold: Section, height: float) -> float:
 
 
 def relaxed_levers(
-    section: Section,
+    section: Immersible,
     loading: Loading,
     water: Water,
     heels: np.ndarray,

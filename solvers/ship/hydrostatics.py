@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 
 from solvers.machine.errors import Unavailable
-from solvers.ship.section import Section
+from solvers.ship.section import Immersible
 from solvers.ship.water import Water
 
 SEARCH = pi / 180.0  # step (rad) of the search for an angle of equilibrium
@@ -36,7 +36,7 @@ def turned(point: tuple[float, float], roll) -> np.ndarray:
 
 
 def buoyancy(
-    section: Section, water: Water, heave, roll, elevation=0.0, slope=0.0, about: tuple[float, float] = (0.0, 0.0)
+    section: Immersible, water: Water, heave, roll, elevation=0.0, slope=0.0, about: tuple[float, float] = (0.0, 0.0)
 ) -> np.ndarray:
     """Force y, z (N/m) and moment (N) of the water about the hull's point `about`, (…, 3), at poses (m, rad).
 
@@ -53,13 +53,13 @@ def buoyancy(
     return np.stack([force_y, force_z, pressure * (lever_y + wet.slope * lever_z)], axis=-1)
 
 
-def restoring(section: Section, loading: Loading, water: Water, heave, roll, elevation=0.0, slope=0.0) -> np.ndarray:
+def restoring(section: Immersible, loading: Loading, water: Water, heave, roll, elevation=0.0, slope=0.0) -> np.ndarray:
     """Restoring force y, z (N/m) of buoyancy and weight, and moment (N) about the centre of gravity, (…, 3)."""
     load = buoyancy(section, water, heave, roll, elevation, slope, about=loading.centre)
     return load - np.array([0.0, loading.mass * water.gravity, 0.0])
 
 
-def stiffness(section: Section, loading: Loading, water: Water, heave: float, roll: float) -> np.ndarray:
+def stiffness(section: Immersible, loading: Loading, water: Water, heave: float, roll: float) -> np.ndarray:
     """Hydrostatic stiffness (3, 3) in sway, heave and roll about the centre of gravity.
 
     It is minus the derivative of the restoring force and moment, at a pose where buoyancy balances the weight; in N/m²,
@@ -73,7 +73,7 @@ def stiffness(section: Section, loading: Loading, water: Water, heave: float, ro
 
 
 def surface_force(
-    section: Section, water: Water, heave: float, roll: float, about: tuple[float, float] = (0.0, 0.0)
+    section: Immersible, water: Water, heave: float, roll: float, about: tuple[float, float] = (0.0, 0.0)
 ) -> np.ndarray:
     """Derivatives (2, 3) of `buoyancy` with respect to the surface's elevation (per m) and slope, in calm water.
 
@@ -87,21 +87,21 @@ def surface_force(
     return water.density * water.gravity * table
 
 
-def _about(section: Section, heave: float, roll: float, point: tuple[float, float]):
+def _about(section: Immersible, heave: float, roll: float, point: tuple[float, float]):
     """The immersed part, and ∫(y − y_P) dy and ∫(y − y_P)² dy of the waterline about a point P of the hull."""
     plane, y = section.waterplane(heave, roll), turned(point, roll)[0]
     first = plane.moment - y * plane.breadth
     return section.immersion(heave, roll), first, plane.second_moment - y * (plane.moment + first)
 
 
-def potential_energy(section: Section, loading: Loading, water: Water, heave, roll) -> np.ndarray:
+def potential_energy(section: Immersible, loading: Loading, water: Water, heave, roll) -> np.ndarray:
     """Potential energy (J/m) in calm water, M g z_G + ρ g ∫∫d dA; its negative gradient is force and moment."""
     height = np.asarray(heave) + turned(loading.centre, roll)[..., 1]
     wet = section.immersion(heave, roll)
     return water.gravity * (loading.mass * height + water.density * wet.depth_moment)
 
 
-def balanced_heave(section: Section, loading: Loading, water: Water, roll: float) -> float:
+def balanced_heave(section: Immersible, loading: Loading, water: Water, roll: float) -> float:
     """The heave (m) at which buoyancy balances the weight at a roll (rad); raises `Unavailable` if the hull sinks."""
     from scipy.optimize import brentq  # slow to import
 
@@ -111,23 +111,23 @@ def balanced_heave(section: Section, loading: Loading, water: Water, roll: float
             f"the hull's mass of {loading.mass:.6g} kg/m must be above 0 and below the "
             f"{section.area * water.density:.6g} kg/m that its whole section displaces."
         )
-    heights = turned(tuple(section.outline.T), roll)[..., 1]
+    heights = turned(tuple(section.corners.T), roll)[..., 1]
     surplus = lambda heave: float(section.immersion(heave, roll).area) - needed  # noqa: E731
     return brentq(surplus, -heights.max() - 1e-9, -heights.min() + 1e-9, xtol=1e-14 * section.size, rtol=1e-15)
 
 
-def righting_lever(section: Section, loading: Loading, water: Water, roll: float) -> float:
+def righting_lever(section: Immersible, loading: Loading, water: Water, roll: float) -> float:
     """Righting lever GZ (m) at a roll (rad) in vertical equilibrium; it rights if it has the sign of the roll."""
     heave = balanced_heave(section, loading, water, roll)
     return float(-restoring(section, loading, water, heave, roll)[2] / (loading.mass * water.gravity))
 
 
-def righting_levers(section: Section, loading: Loading, water: Water, rolls: np.ndarray) -> np.ndarray:
+def righting_levers(section: Immersible, loading: Loading, water: Water, rolls: np.ndarray) -> np.ndarray:
     """The GZ curve (m) at rolls (rad)."""
     return np.array([righting_lever(section, loading, water, roll) for roll in rolls])
 
 
-def metacentric_height(section: Section, loading: Loading, water: Water, roll: float = 0.0) -> float:
+def metacentric_height(section: Immersible, loading: Loading, water: Water, roll: float = 0.0) -> float:
     """Metacentric height GM (m), the slope of GZ at a roll (rad): I/A − B̄G, I about the middle of the waterline."""
     heave = balanced_heave(section, loading, water, roll)
     wet, plane = section.immersion(heave, roll), section.waterplane(heave, roll)
@@ -136,7 +136,7 @@ def metacentric_height(section: Section, loading: Loading, water: Water, roll: f
     return float(second / wet.area - (gravity_height - wet.centroid[1]))
 
 
-def equilibrium(section: Section, loading: Loading, water: Water, roll: float = 0.0) -> tuple[float, float]:
+def equilibrium(section: Immersible, loading: Loading, water: Water, roll: float = 0.0) -> tuple[float, float]:
     """Heave (m) and roll (rad) at which the hull comes to rest in calm water, starting from a roll (rad).
 
     It turns in the direction of its moment; from an unstable equilibrium to port, the positive side.

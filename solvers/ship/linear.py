@@ -9,7 +9,7 @@ from solvers.ship.body import Body
 from solvers.ship.hydrostatics import stiffness
 from solvers.ship.motion import Ship, rate
 from solvers.ship.potential.radiation import Hydrodynamics
-from solvers.ship.section import Section
+from solvers.ship.section import Immersible
 from solvers.ship.water import Water
 
 STEP = 1e-5  # m, rad, m/s and rad/s, step of the difference quotients
@@ -19,7 +19,7 @@ ROLL = 2
 
 
 def impedance(
-    ship: Ship, section: Section, water: Water, heave: float, table: Hydrodynamics, roll: float = 0.0
+    ship: Ship, section: Immersible, water: Water, heave: float, table: Hydrodynamics, roll: float = 0.0
 ) -> np.ndarray:
     """Impedance Z (n, 3, 3) about P at each frequency of a table, Z x = X: −ω² (M + A) − iω (B + viscous) + C.
 
@@ -37,7 +37,7 @@ def impedance(
 
 def response(
     ship: Ship,
-    section: Section,
+    section: Immersible,
     water: Water,
     heave: float,
     table: Hydrodynamics,
@@ -53,7 +53,7 @@ def response(
     return found
 
 
-def inertia_for_roll(ship: Ship, section: Section, water: Water, heave: float, table: Hydrodynamics) -> Body:
+def inertia_for_roll(ship: Ship, section: Immersible, water: Water, heave: float, table: Hydrodynamics) -> Body:
     """The ship's body with the inertia whose undamped natural roll frequency is the only one of a table about P.
 
     There the impedance of roll, with the other free motions eliminated, has no real part. Raises `Unavailable` if the

@@ -8,7 +8,7 @@ import numpy as np
 
 from solvers.ship.hydrostatics import buoyancy, surface_force, turned
 from solvers.ship.potential.radiation import Hydrodynamics
-from solvers.ship.section import Section
+from solvers.ship.section import Immersible
 from solvers.ship.water import Water
 from solvers.ship.waves import Waves
 
@@ -17,13 +17,13 @@ NO_WAVES = Waves(np.zeros(0, complex), np.zeros(0), np.zeros(0))
 
 @dataclass(frozen=True, eq=False)
 class Floating:
-    """Buoyancy of the section under the waves' sloping surface, and the rest of the waves' linear force.
+    """Buoyancy of a section or a whole hull under the waves' sloping surface, and the rest of the waves' linear force.
 
     `about` (m) is the point of the hull whose pose (y, z, roll) is given and about which moments are taken. `excess`
     (n, 3), complex, is each wave's force and moment per metre of amplitude, less the part that this buoyancy gives.
     """
 
-    section: Section
+    section: Immersible
     water: Water
     about: tuple[float, float] = (0.0, 0.0)
     waves: Waves = NO_WAVES
@@ -57,7 +57,7 @@ class Floating:
 
 
 def floating_in_waves(
-    section: Section,
+    section: Immersible,
     water: Water,
     about: tuple[float, float],
     waves: Waves,

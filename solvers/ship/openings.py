@@ -6,12 +6,12 @@ from math import pi
 import numpy as np
 
 from solvers.ship.hydrostatics import SEARCH, Loading, balanced_heave, turned
-from solvers.ship.section import Section
+from solvers.ship.section import Immersible
 from solvers.ship.water import Water
 
 
 def immersion_angle(
-    section: Section, loading: Loading, water: Water, points: Sequence[tuple[float, float]]
+    section: Immersible, loading: Loading, water: Water, points: Sequence[tuple[float, float]]
 ) -> float | None:
     """Least |heel| (rad), to either side, at which one of the points (m) reaches the still waterline, or None.
 
@@ -24,7 +24,7 @@ def immersion_angle(
     return min(found, default=None)
 
 
-def _to_one_side(section: Section, loading: Loading, water: Water, points, side: float) -> float | None:
+def _to_one_side(section: Immersible, loading: Loading, water: Water, points, side: float) -> float | None:
     from scipy.optimize import brentq  # slow to import
 
     corners = tuple(np.transpose(points))

@@ -7,7 +7,7 @@ import numpy as np
 
 from solvers.machine.errors import Unavailable
 from solvers.ship.hydrostatics import SEARCH, Loading, equilibrium, righting_lever
-from solvers.ship.section import Section
+from solvers.ship.section import Immersible
 from solvers.ship.water import Water
 
 CYCLES = 10  # of the waves at the end of a run, which count as the steady motion
@@ -16,7 +16,7 @@ BIAS = np.radians(0.5)  # mean roll beyond which a ship is not upright
 STRAY = 0.1  # of the motion's rms: with more at other frequencies the motion has several
 
 
-def roll_limits(section: Section, loading: Loading, water: Water, largest: float = pi) -> tuple[float, float]:
+def roll_limits(section: Immersible, loading: Loading, water: Water, largest: float = pi) -> tuple[float, float]:
     """Angles of vanishing stability (rad) to starboard and to port, or ∓`largest` if that is nearer.
 
     On each side the search starts where the hull comes to rest if released slightly off upright to that side.
@@ -24,7 +24,7 @@ def roll_limits(section: Section, loading: Loading, water: Water, largest: float
     return tuple(float(np.clip(_vanishing(section, loading, water, s, largest), -largest, largest)) for s in (-1, 1))
 
 
-def _vanishing(section: Section, loading: Loading, water: Water, side: int, largest: float) -> float:
+def _vanishing(section: Immersible, loading: Loading, water: Water, side: int, largest: float) -> float:
     from scipy.optimize import brentq  # slow to import
 
     rest = equilibrium(section, loading, water, side * SEARCH)[1]

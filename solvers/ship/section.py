@@ -1,4 +1,4 @@
-"""A hull's section: a polygon, and the part of it under a calm or sloping water surface at any pose.
+"""A hull's section, a polygon, or the stations of a whole hull: what is under a calm or sloping surface at any pose.
 
 Under a surface z = ζ + s (y − Y) (Y the sway of the hull's origin) a point's depth is d = ζ + s (y − Y) − z. The
 coordinates (y, d) are a shear that preserves areas. In them, by Green's theorem, every integral over the immersed part
@@ -6,6 +6,7 @@ is one along the outline only: on the surface d = 0, which adds nothing. So imme
 sorted or closed.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -46,8 +47,62 @@ class Waterplane:
     second_moment: np.ndarray
 
 
+class Immersible:
+    """What hydrostatics ask of a hull, per metre of her: `outlines`, each with its share of that metre."""
+
+    outlines: Sequence[tuple[np.ndarray, float]]
+
+    @cached_property
+    def size(self) -> float:
+        """The larger of the width and height (m) of the largest section."""
+        return max(float(np.ptp(outline, axis=0).max()) for outline, _ in self.outlines)
+
+    @cached_property
+    def area(self) -> float:
+        """Area (m²) of the whole section, or volume a metre of the whole hull."""
+        return sum(share * _enclosed(outline) for outline, share in self.outlines)
+
+    @cached_property
+    def corners(self) -> np.ndarray:
+        """The corners (k, 2) m of all outlines."""
+        return np.concatenate([outline for outline, _ in self.outlines])
+
+    def immersion(self, heave, roll, elevation=0.0, slope=0.0) -> Immersion:
+        """The part below the surface `elevation` (m) + `slope` (∂ζ/∂y) × y, at poses that broadcast together."""
+        y, depth, elevation, slope = self._below(heave, roll, elevation, slope)
+        y0, d0, y1, d1 = _clipped(y, depth)
+        along = self._chain[1] * (y1 - y0)
+        area = 0.5 * along * (d0 + d1)
+        moment = along / 6.0 * (y0 * (2.0 * d0 + d1) + y1 * (d0 + 2.0 * d1))
+        depth_moment = along / 6.0 * (d0 * d0 + d0 * d1 + d1 * d1)
+        return Immersion(area.sum(-1), moment.sum(-1), depth_moment.sum(-1), elevation, slope)
+
+    def waterplane(self, heave, roll, elevation=0.0, slope=0.0) -> Waterplane:
+        """Breadth and moments of the waterline, at poses that broadcast together."""
+        y, depth, _, _ = self._below(heave, roll, elevation, slope)
+        crossing, sign = _crossings(y, depth)
+        powers = [(self._chain[1] * sign * crossing**n / n).sum(-1) for n in (1, 2, 3)]
+        return Waterplane(*powers)
+
+    @cached_property
+    def _chain(self) -> tuple[np.ndarray, np.ndarray]:
+        """All corners (k + 1, 2) m, outlines closed, and the shares (k,) of the edges, 0 from one outline to the next."""
+        closed = [np.concatenate([outline, outline[:1]]) for outline, _ in self.outlines]
+        shares = [np.append(np.full(len(outline), share), 0.0) for outline, share in self.outlines]
+        return np.concatenate(closed), np.concatenate(shares)[:-1]
+
+    def _below(self, heave, roll, elevation, slope):
+        """Corners' y from the hull's origin and depth (…, m), the first of an outline again at its end; the surface."""
+        heave, roll, elevation, slope = np.broadcast_arrays(heave, roll, elevation, slope)
+        corners, _ = self._chain
+        cos, sin = np.cos(roll)[..., None], np.sin(roll)[..., None]
+        y = cos * corners[:, 0] - sin * corners[:, 1]
+        z = heave[..., None] + sin * corners[:, 0] + cos * corners[:, 1]
+        return y, elevation[..., None] + slope[..., None] * y - z, elevation, slope
+
+
 @dataclass(frozen=True, eq=False)
-class Section:
+class Section(Immersible):
     """A section: a simple polygon (m, 2) of y, z in m, counter-clockwise, in the hull's own frame.
 
     Raises `Unavailable` for any other outline.
@@ -60,32 +115,10 @@ class Section:
         object.__setattr__(self, "outline", outline)
         _check(outline)
 
-    @cached_property
-    def size(self) -> float:
-        """The larger of the section's width and height (m)."""
-        return float(np.ptp(self.outline, axis=0).max())
-
-    @cached_property
-    def area(self) -> float:
-        """Area (m²) of the whole section."""
-        return _enclosed(self.outline)
-
-    def immersion(self, heave, roll, elevation=0.0, slope=0.0) -> Immersion:
-        """The part below the surface `elevation` (m) + `slope` (∂ζ/∂y) × y, at poses that broadcast together."""
-        y, depth, elevation, slope = self._below(heave, roll, elevation, slope)
-        y0, d0, y1, d1 = _clipped(y, depth)
-        along = y1 - y0
-        area = 0.5 * along * (d0 + d1)
-        moment = along / 6.0 * (y0 * (2.0 * d0 + d1) + y1 * (d0 + 2.0 * d1))
-        depth_moment = along / 6.0 * (d0 * d0 + d0 * d1 + d1 * d1)
-        return Immersion(area.sum(-1), moment.sum(-1), depth_moment.sum(-1), elevation, slope)
-
-    def waterplane(self, heave, roll, elevation=0.0, slope=0.0) -> Waterplane:
-        """Breadth and moments of the waterline, at poses that broadcast together."""
-        y, depth, _, _ = self._below(heave, roll, elevation, slope)
-        crossing, sign = _crossings(y, depth)
-        powers = [(sign * crossing**n / n).sum(-1) for n in (1, 2, 3)]
-        return Waterplane(*powers)
+    @property
+    def outlines(self) -> list[tuple[np.ndarray, float]]:
+        """Its outline, all along."""
+        return [(self.outline, 1.0)]
 
     def waterlines(self, heave: float, roll: float, elevation: float = 0.0, slope: float = 0.0) -> np.ndarray:
         """Ends (k, 2, 2) m of the waterline's k pieces at one pose, from port to starboard, in the earth's axes.
@@ -105,14 +138,21 @@ class Section:
         wet = np.hypot(y1 - y0, d1 - d0) > ROUNDING * self.size
         return np.stack([np.stack([y0, -d0], axis=-1), np.stack([y1, -d1], axis=-1)], axis=1)[wet]
 
-    def _below(self, heave, roll, elevation, slope):
-        """Corners' y from the hull's origin and depth (…, m), the first corner repeated at the end; the surface."""
-        heave, roll, elevation, slope = np.broadcast_arrays(heave, roll, elevation, slope)
-        corners = np.concatenate([self.outline, self.outline[:1]])
-        cos, sin = np.cos(roll)[..., None], np.sin(roll)[..., None]
-        y = cos * corners[:, 0] - sin * corners[:, 1]
-        z = heave[..., None] + sin * corners[:, 0] + cos * corners[:, 1]
-        return y, elevation[..., None] + slope[..., None] * y - z, elevation, slope
+
+@dataclass(frozen=True, eq=False)
+class Stations(Immersible):
+    """A whole hull that keeps her trim: sections side by side, with their shares (n,) of her length.
+
+    All are in the hull's own frame. In beam waves the surface is the same for all of them.
+    """
+
+    sections: Sequence[Section]
+    shares: np.ndarray
+
+    @property
+    def outlines(self) -> list[tuple[np.ndarray, float]]:
+        """Each station's outline with its share."""
+        return [(section.outline, float(share)) for section, share in zip(self.sections, self.shares, strict=True)]
 
 
 def box(width: float, height: float) -> Section:

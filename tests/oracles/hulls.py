@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solvers.ship.section import Section
+from solvers.ship.section import Section, Stations, box
 
 
 def mirrored(section: Section) -> Section:
@@ -34,3 +34,12 @@ def rounded(width: float, height: float, radius: float, arcs: int = 8) -> Sectio
     bilge = np.column_stack([0.5 * width - radius + radius * np.cos(angle), radius + radius * np.sin(angle)])
     deck = np.array([[0.5 * width, height], [-0.5 * width, height]])
     return Section(np.vstack([bilge, deck, (bilge * [-1.0, 1.0])[::-1]]))
+
+
+def tapered(half: float, height: float, count: int) -> Stations:
+    """Boxes whose breadth falls to nothing at the ends along a parabola, `half` (m) wide on each side amidships."""
+    from scipy.integrate import simpson
+
+    x = np.linspace(-1.0, 1.0, count)
+    shares = 0.5 * simpson(np.eye(count), x=x)
+    return Stations(tuple(box(2.0 * half * (1.0 - one**2), height) for one in x[1:-1]), shares[1:-1])

@@ -48,9 +48,9 @@ class Ship:
     in the hull's own axes. A box may have a `hatch`: its coaming keeps water out as sides do, and its upper edges are
     openings. Sway and heave are the motions of her axis from its position at rest (`axis_motion`), in equations,
     recordings, figures and pictures; she is heeled about it. `damping` and `quadratic_damping` are those of
-    φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `hydrodynamics` changes what is linear in waves and motion alone: buoyancy is
-    her section's, times `length`, which must displace what her whole hull does. The default of `repose` is that of
-    the source's acetate, the first of the critical angles that it found by tilting (Spandonidis 2016, section 7.1).
+    φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `hydrodynamics` changes what is linear in waves and motion. Buoyancy is that of her
+    section times `length`, or with `offsets` of her whole hull, on an even keel. The default of `repose` is that of the
+    source's acetate, the first of the critical angles that it found by tilting (Spandonidis 2016, section 7.1).
     """
 
     draught: Annotated[Length, Doc("Draught with her cargo aboard.")]
@@ -74,7 +74,7 @@ class Ship:
     ] = False
     length: Annotated[
         Length | None,
-        Doc("How many metres of her section displace what she does; beside it counts the length of her hold."),
+        Doc("Her length; without offsets, of so many metres of her section. The length of her hold counts beside it."),
     ] = None
     hold: Annotated[Point, Doc("Where the tank's origin is in the hull's axes, y and z.")] = (0.0, 0.0)
     axis: Annotated[
@@ -102,7 +102,7 @@ class Ship:
         Table | None,
         Columns(OFFSETS, most=MOST_OFFSETS),
         Doc(
-            "A CSV file of her hull's offsets, whose waterline also sets her stiffness in small heave and roll; "
+            "A CSV file of her hull's offsets, by which she also floats and rights at any heel, on an even keel; "
             "without it her hull is a prism, her section all along `length`."
         ),
     ] = None

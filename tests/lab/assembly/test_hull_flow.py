@@ -266,7 +266,7 @@ def test_a_hull_from_offsets_floats_in_waves(tmp_path):
     [
         ({"ship.hydrodynamics": "strips", "ship.length": False, "tank.length": False}, "ship.length: missing"),
         ({"ship.offsets": "OFFSETS"}, "ship.offsets: is not used"),
-        ({"ship.hydrodynamics": "strips", "ship.offsets": "OFFSETS"}, "ship.length: 3 m of her section displace"),
+        ({"ship.hydrodynamics": "strips", "ship.offsets": "OFFSETS"}, "ship.breadth: her section is 1 m wide"),
         ({"ship.hydrodynamics": "boat"}, "ship.hydrodynamics: 'boat' is unknown"),
     ],
 )

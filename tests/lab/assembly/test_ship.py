@@ -1,7 +1,6 @@
-"""The hydrostatics of a ship whose hull has lines: those of all of her, not of her section, in small motions."""
+"""The hydrostatics of a ship whose hull has lines: those of all of her, not of her section."""
 
 from dataclasses import replace
-from math import radians, sin
 
 import numpy as np
 import pytest
@@ -10,8 +9,10 @@ from lab.assembly.hull_tables import whole_form
 from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.find import load
+from solvers.ship.hydrostatics import righting_levers
 from solvers.ship.linear import impedance, oscillations
 from solvers.ship.motion import start
+from solvers.ship.section import Section
 
 G = 9.81
 FROZEN = {"water.model": "frozen"}
@@ -50,22 +51,29 @@ def test_stiffness_is_that_of_the_whole_waterline(preset, ship, waterline):
     assert spring[2, 2] == pytest.approx(salt * G * volume / length * height, rel=0.02)
 
 
-def test_righting_moment_is_that_of_all_stations_heeled(preset, ship):
-    """W GZ of the form at 1 and 3 degrees, which heels every station, about her centre of gravity."""
-    form, given = whole_form(preset.ship), preset.ship
-    weight = ship.body.mass * G
-    for heel in (radians(1.0), radians(3.0)):
-        state = start(ship, given.heave, heel)
-        place = given.about[1] - given.gravity_height
-        moment = ship.load.force(state[:3], 0.0)[2] - ship.rig.spring[2] * heel
-        about_centre = moment - weight * place * sin(heel)  # from her axis in the waterline to her centre of gravity
-        arms = form.righting_levers(
-            form.hydrostatics(given.draught, ship.load.water).displacement,
-            ship.load.water,
-            np.array([heel]),
-            (0.0, given.gravity_height),
-        )
-        assert -about_centre / weight == pytest.approx(arms[0], rel=0.03)
+def test_righting_levers_are_those_of_all_stations_heeled(preset, ship):
+    """GZ of the form, which finds her draught and sums the stations by itself, at any heel; her section has others."""
+    form, given, heel = whole_form(preset.ship), preset.ship, np.radians([3.0, 20.0, 45.0, 80.0, 150.0])
+    found = righting_levers(ship.load.section, ship.body.loading, ship.load.water, heel)
+    mass = form.hydrostatics(given.draught, ship.load.water).displacement
+    wanted = form.righting_levers(mass, ship.load.water, heel, (0.0, given.gravity_height))
+    assert found == pytest.approx(wanted, abs=1e-6 * given.draught)
+    section, loading = Section(given.corners), replace(ship.body.loading, mass=ship.body.mass * given.length / 28.24)
+    amidships = righting_levers(section, loading, ship.load.water, heel)
+    assert np.abs(amidships - wanted).max() > 0.05 * given.draught
+
+
+def test_her_weight_is_that_of_the_water_she_displaces(preset, ship):
+    """1523 t, by the trapezoidal rule over areas of polygons cut at her draught."""
+    columns = preset.ship.offsets.columns
+    station, z, half = (np.array(columns[name]) for name in ("station", "z", "half_breadth"))
+    areas = []
+    for one in np.unique(station):
+        level, side = z[station == one], half[station == one]
+        fine = np.linspace(0.0, preset.ship.draught, 2001)
+        areas.append(np.trapezoid(2.0 * np.interp(fine, level, side, left=0.0), fine))
+    volume = np.trapezoid(areas, np.unique(station))
+    assert ship.body.mass * preset.ship.length == pytest.approx(preset.sea.density * volume, rel=0.01)
 
 
 def test_she_rolls_and_heaves_as_stiffness_and_inertia_say(preset, ship):
@@ -78,14 +86,22 @@ def test_she_rolls_and_heaves_as_stiffness_and_inertia_say(preset, ship):
     assert np.abs(found / least - 1.0).min() < 0.02
 
 
-def test_a_hull_of_one_section_has_nothing_beyond_it(tmp_path):
-    """Offsets of her section all along add no stiffness."""
+def test_a_hull_of_one_section_floats_as_that_section(tmp_path):
+    """Offsets of her section all along: the same weight, levers and forces of waves."""
     given = load("ship/anti-roll-tank", FROZEN).resolved.ship
     side = given.corners[given.corners[:, 0] >= 0.0]
     side = np.vstack([[0.0, 0.0], side[side[:, 1].argsort()]])
     lines = [f"{x},{z},{y}" for x in (0.0, 0.5 * given.length, given.length) for y, z in side]
     file = tmp_path / "prism.csv"
     file.write_text("\n".join(["station,z,half_breadth", *lines]) + "\n")
-    preset = load("ship/anti-roll-tank", {**FROZEN, "ship.offsets": str(file), "ship.hydrodynamics": "strips"}).resolved
-    prism = vessels(preset)[0].ship
-    assert np.abs(prism.rig.spring).max() < 1e-6 * prism.body.mass * G
+    changes = {**FROZEN, "ship.hydrodynamics": "strips"}
+    hull, section = (
+        vessels(load("ship/anti-roll-tank", changes | more).resolved)[0].ship
+        for more in ({"ship.offsets": str(file)}, {})
+    )
+    assert hull.body.mass == pytest.approx(section.body.mass, rel=1e-12)
+    heel = np.radians([5.0, 40.0, 100.0])
+    levers = [righting_levers(one.load.section, one.body.loading, one.load.water, heel) for one in (hull, section)]
+    assert levers[0] == pytest.approx(levers[1], abs=1e-9)
+    pose = np.array([0.4, section.about[1] + given.heave, 0.3])
+    assert hull.load.force(pose, 31.0) == pytest.approx(section.load.force(pose, 31.0), rel=1e-3)

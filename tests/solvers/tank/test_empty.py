@@ -16,6 +16,7 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import regular
 from solvers.simulation import Simulation
+from tests.oracles.hulls import tapered
 from tests.oracles.scenes import box as tank
 
 WATER, BARGE, AXIS, HOLD = Water(), box(0.34, 0.30), (0.0, 0.11), (0.0, 0.02)
@@ -33,14 +34,15 @@ def launched(scene: Scene, schedule: str = "per-world") -> Simulation:
     return Simulation(scene, threads=1, arch="cpu")
 
 
-def in_waves() -> Vessel:
-    load = Floating(BARGE, WATER, AXIS, regular(0.02, 4.4, WATER, soft_start=1.0), np.array([[-30.0j, -400.0, 2.0j]]))
+def in_waves(hull=BARGE) -> Vessel:
+    load = Floating(hull, WATER, AXIS, regular(0.02, 4.4, WATER, soft_start=1.0), np.array([[-30.0j, -400.0, 2.0j]]))
     return Vessel(Ship(BODY, load, DAMPED, AXIS, RollDamping(0.2, 0.3)), HOLD, laden=True)
 
 
-def test_an_empty_hold_moves_as_the_rigid_body_in_waves():
+@pytest.mark.parametrize("hull", [BARGE, tapered(0.25, 0.30, 9)], ids=["section", "stations"])
+def test_an_empty_hold_moves_as_the_rigid_body_in_waves(hull):
     """Sway, heave and roll of the method of Runge and Kutta alone, to rounding."""
-    vessel = in_waves()
+    vessel = in_waves(hull)
     run = launched(empty(vessels=[vessel]))
     interval = int(run.carrier.every[0]) * run.dt
     alone = sail(vessel.ship, start(vessel.ship, vessel.heave(NOTHING, 0.0)), interval, 4.0)
