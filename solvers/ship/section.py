@@ -86,7 +86,7 @@ class Immersible:
 
     @cached_property
     def _chain(self) -> tuple[np.ndarray, np.ndarray]:
-        """All corners (k + 1, 2) m, outlines closed, and the shares (k,) of the edges, 0 from one outline to the next."""
+        """All corners (k + 1, 2) m, outlines closed, and shares (k,) of the edges, 0 from one outline to the next."""
         closed = [np.concatenate([outline, outline[:1]]) for outline, _ in self.outlines]
         shares = [np.append(np.full(len(outline), share), 0.0) for outline, share in self.outlines]
         return np.concatenate(closed), np.concatenate(shares)[:-1]
