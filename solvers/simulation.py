@@ -55,11 +55,11 @@ class Simulation:
     ):
         self.threads = threads or runtime.available_cores()
         worlds, grains = scene.radius.shape
-        asked = scene.precision, scene.particles > 0, worlds * (grains + scene.particles)
+        asked = scene.precision, scene.moved > grains, worlds * scene.moved
         self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, *asked)
         runtime.initialise(self.threads, self.arch, scene.precision)
         self.scene, self.dt, self.longest_step = scene, scene.time_step(), scene.longest_step(1.0)  # s; at set-up
-        count = grains + scene.particles
+        count = scene.moved
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius

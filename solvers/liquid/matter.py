@@ -57,8 +57,9 @@ class LiquidMatter(Matter):
         self.way, self.speed_of = own.reals(each, "way", "speed", kind=own.exact)
         (self.rise,) = own.reals(each, "rise", kind=own.exact)
         self.pull = own.reals(each[:1], "pull_y", "pull_z", kind=own.exact, kept=False)  # gravity, in the tank's axes
-        self.before = (Phase(self.push, self.units),)
-        self.after = (Phase(self.swing, self.units),)
+        # Of whole worlds: a band of one, cut for the grains beside it, has no liquid of its own.
+        self.before = (Phase(self.push),)
+        self.after = (Phase(self.swing),)
 
     def _padded(self, one: Modes) -> np.ndarray:
         """Mass (kg), place (m), frequency (rad/s) and damping of each mass, (modes, 5); unused ones have no mass."""

@@ -117,6 +117,26 @@ def test_frozen_water_loads_a_tank_as_a_rigid_body():
     assert load == pytest.approx(exact, abs=2e-4 * np.abs(exact).max())
 
 
+@pytest.mark.parametrize("model", ["frozen", "linear"])
+def test_liquid_in_a_ship_whose_world_is_cut_into_bands(model):
+    """Bands are of the grains beside it: it answers as in a whole world. On two cores such a ship once ended a run."""
+    poses = []
+    for schedule, units in (("per-world", 1), ("per-band", 3)):
+        scene = at_sea(model)
+        scene.schedule = schedule
+        run = Simulation(scene, threads=1, arch="cpu", units=units)
+        run.advance(700)
+        poses.append(run.observe()["pose"][0])
+        run.close()
+    assert np.abs(poses[0]).max() > 1e-3
+    assert poses[1] == pytest.approx(poses[0], abs=1e-12)
+
+
+def test_liquid_without_particles_is_not_cut():
+    scene = at_sea("linear")
+    assert scene.particles > 0 and scene.moved == 0 and scene.work == 1
+
+
 def at_sea(model: str, **changes) -> Scene:
     """The barge in regular waves, with a tank of water half as long as she is."""
     sea = Sea()
