@@ -73,10 +73,10 @@ def test_water_that_a_piston_pushes_away_is_in_its_waves():
 
 @given
 def test_the_piston_of_the_flume_moves_as_its_record():
-    """The closed form, to 1.5 mm, from when the record begins to move."""
+    """The closed form, for six periods from when the record begins to move: as near as whole millimetres are."""
     time, place = measured.series(RECORD)[:2]
     table = Path(lab.__file__).parents[1] / "presets" / "validation" / "ciemito-flume.csv"
     own_time, own = np.loadtxt(table, delimiter=",", skiprows=1).T
-    within = (time > surfaces.STARTED) & (time < 7.5)
+    within = (time > surfaces.STARTED) & (time < 7.0)
     apart = np.interp(time[within] - surfaces.STARTED, own_time, own) - (place[within] - place[0])
-    assert np.abs(1e3 * apart).max() < 3.0 and 1e3 * np.sqrt(np.mean(apart**2)) < 1.5
+    assert np.abs(1e3 * apart).max() < 1.2 and 1e3 * np.sqrt(np.mean(apart**2)) < 1.1 * 1.0 / np.sqrt(12.0)
