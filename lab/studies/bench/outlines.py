@@ -39,7 +39,7 @@ RULES = (
 )
 FEW = RULES[::3]
 DISCS = None
-COSTS, TICKS = (3.0, 120.0), (5, 10, 20, 50, 100)  # of a step in motion, in the figure
+COSTS, TICKS = (3.0, 300.0), (5, 10, 20, 50, 100, 200)  # of a step in motion, in the figure
 COLOURS = {"continuous": BLUE, "nodes": GREY, "area": VERMILION}
 
 
