@@ -37,7 +37,7 @@ FINEST = 1.2  # √(g/draught): the highest frequency that is solved in space
 PANEL = 0.5  # of the draught: an eighth of the length of waves of that frequency is 0.55
 MOST_PANELS = 2500.0  # of the half hull, on its bottom
 FADING = 4.0  # power of the frequency with which the difference of hull and strips at the join falls
-SAME = 0.02  # of the breadth, by which section and hull may differ
+SAME = 0.02  # of breadth and depth, by which section and hull may differ
 OF_STRIPS = (*SOLVED_BY, by_strips, forms)
 IN_SPACE = (*OF_STRIPS, meshes, hull_flow, sys.modules[__name__])
 
@@ -51,15 +51,30 @@ def whole_form(given: ships.Ship) -> Form:
     form = from_offsets(*columns, name=f"ship.offsets: {given.offsets.name}")
     if form.depth < given.draught:
         raise LabError(f"ship.draught: must be less than the {show(form.depth, 'm')} of the hull in ship.offsets.")
+    _compare(given, section, [one for one in form.sections if one is not None])
+    return form
+
+
+def _compare(given: ships.Ship, section: Section, stations: list[Section]) -> None:
+    """Raise LabError if the ship's section is broader or narrower afloat than her stations, or they end below its deck.
+
+    She is drawn as her section, which has her deck's edge and her hold; without tops water would come over her sooner.
+    """
     own = float(section.waterplane(given.heave, 0.0).breadth)
-    hers = max(float(one.waterplane(-given.draught, 0.0).breadth) for one in form.sections if one is not None)
+    hers = max(float(one.waterplane(-given.draught, 0.0).breadth) for one in stations)
     if abs(own / hers - 1.0) > SAME:
         key = "ship.breadth" if given.outline is None else "ship.outline"
         raise LabError(
             f"{key}: her section is {show(own, 'm')} wide in the waterline, the hull in ship.offsets "
             f"{show(hers, 'm')}; draw the section amidships of that hull."
         )
-    return form
+    deck = float(given.corners[:, 1].max()) if given.deck_height is None else given.deck_height
+    top, deck = max(float(one.outline[:, 1].max()) for one in stations), deck - float(given.corners[:, 1].min())
+    if top < (1.0 - SAME) * deck:
+        raise LabError(
+            f"ship.offsets: her stations end {show(top, 'm')} over the keel, and her section's deck is at "
+            f"{show(deck, 'm')}; give rows up to the deck."
+        )
 
 
 def whole_table(given: ships.Ship, water: Water, frequency: np.ndarray) -> Hydrodynamics:

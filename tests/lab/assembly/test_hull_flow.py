@@ -267,6 +267,7 @@ def test_a_hull_from_offsets_floats_in_waves(tmp_path):
         ({"ship.hydrodynamics": "strips", "ship.length": False, "tank.length": False}, "ship.length: missing"),
         ({"ship.offsets": "OFFSETS"}, "ship.offsets: is not used"),
         ({"ship.hydrodynamics": "strips", "ship.offsets": "OFFSETS"}, "ship.breadth: her section is 1 m wide"),
+        ({"ship.hydrodynamics": "strips", "ship.offsets": "LOW"}, "ship.offsets: her stations end 700 mm over"),
         ({"ship.hydrodynamics": "boat"}, "ship.hydrodynamics: 'boat' is unknown"),
     ],
 )
@@ -274,7 +275,10 @@ def test_wrong_hulls_are_told(changes, words, tmp_path):
     file = tmp_path / "small.csv"
     rows = [f"{x},{z},{0.4}" for x in (0, 1, 2) for z in (0, 0.9)]
     file.write_text("\n".join(["station,z,half_breadth", *rows]))
-    changes = {key: str(file) if value == "OFFSETS" else value for key, value in changes.items()}
+    low = tmp_path / "low.csv"
+    low.write_text("\n".join(["station,z,half_breadth", *(f"{x},{z},0.5" for x in (0, 1, 2) for z in (0, 0.7))]))
+    files = {"OFFSETS": str(file), "LOW": str(low)}
+    changes = {key: files.get(value, value) for key, value in changes.items()}
 
     def build():
         preset = load("ship/barge-two-tanks", changes).resolved
