@@ -74,6 +74,7 @@ def models(scene: Scene) -> Rows:
         ("shifting", water.shifting),
         *([("surface", surface(water.air))] if water.air else []),
         ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
+        *([("walls before and behind", f"{show(water.apart, 'm')} apart")] if water.apart else []),
     ]
 
 

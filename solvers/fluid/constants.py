@@ -15,6 +15,7 @@ from solvers.fluid.states import STATES
 from solvers.fluid.surface.consistency import Consistency
 from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.viscosity import VISCOSITY
+from solvers.fluid.walls.between import Between
 from solvers.fluid.walls.layers import FIRM
 from solvers.machine.state import State
 
@@ -42,7 +43,7 @@ class Constants:
         self.coheres = self.two and water.air.cohesion > 0.0
         self.reduced, self.modified = Reduced(), self.two and water.air.reduced is not None
         self.accounted = not (self.tense or self.coheres)  # for whether all energy has a name
-        self.pulled = water.pull is not None
+        self.pulled, self.rubbed = water.pull is not None, water.apart > 0.0
         self.numbers = numbers = self.numbers_of(water, gravity)
         self.viscous = numbers["strength"] > 0.0 or (self.two and numbers["air_strength"] > 0.0)
         self.at = {name: place for place, name in enumerate(numbers)}
@@ -72,6 +73,7 @@ class Constants:
             "shift": self.shifting.strength(water) * slope if self.shifting.acts else 0.0,
             "shift_most": 0.5 * water.speed,
             "shift_scale": value / self.kernel.printed(water.spacing, length),
+            "rub": Between.rate(water),  # 1/s
             "pull": pull.rate**2 if pull else 0.0,
             "pull_y": pull.centre[0] if pull else 0.0,
             "pull_z": pull.centre[1] if pull else 0.0,

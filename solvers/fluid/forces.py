@@ -209,14 +209,14 @@ class Forces:
             if ti.static(lists.pieces == 1):
                 ends = [lists.beside.first[u, begin], lists.beside.first[u, begin + 1]]
                 self.beside.push_off(
-                    u, b, ends, own, origin, speed, pressure, wall, own_push, shift, fill, [lost, held]
+                    u, b, 0, ends, own, origin, speed, pressure, wall, own_push, shift, fill, [lost, held]
                 )
             else:
                 for piece in range(lists.pieces):
                     ends = [lists.beside.first[u, begin + piece], lists.beside.first[u, begin + piece + 1]]
                     off = [p.zeros() for _ in ti.static(range(p.axes))]
                     self.beside.push_off(
-                        u, b, ends, own, origin, speed, pressure, off, own_push, shift, fill, [lost, held]
+                        u, b, piece, ends, own, origin, speed, pressure, off, own_push, shift, fill, [lost, held]
                     )
                     for a in ti.static(range(p.axes)):
                         wall[a] += off[a]
@@ -226,13 +226,20 @@ class Forces:
                         self.bodies.bear(u, piece - 1, load)
         factor, density = c.get("slope"), c.of("density", gas)
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
+        past, rubbed = [p.zeros() for _ in ti.static(range(p.axes))], p.zeros()  # the walls before and behind
+        if ti.static(c.rubbed):
+            self.note_past(u, b, origin, own, speed, past)
         for a in ti.static(range(p.axes)):
             acceleration = lightness * (push[a] + strength * drag[a] + wall[a])
+            if ti.static(c.rubbed):
+                acceleration = acceleration - c.get("rub") * past[a]
             p.store(p.acceleration[a], b, acceleration)
             # Velocities are half a kick behind the places at which the dummies push.
             gain = acceleration + self.beside.weight(u, b, a)
             held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
             lost = lost - drag[a] * ((0.5 * kick) * gain)
+            if ti.static(c.rubbed):
+                rubbed += past[a] * (past[a] + (0.5 * kick) * gain)
         if ti.static(self.poses.moving and not self.bodies.moving):
             wall_speed = self.walls_at(self.units.world(u), origin, own)
             held += dot(own_push, wall_speed)
@@ -245,10 +252,27 @@ class Forces:
             self.fullness.note(b, yy + zz, fill)
         volume = p.load(p.volume, b) * factor
         force = self.beside.borne(u, b, [volume * wall[a] for a in ti.static(range(p.axes))])
+        taken = strength * volume * lost
+        if ti.static(c.rubbed):
+            rubs = c.get("rub") * p.load(p.mass, b)
+            taken += rubs * rubbed
+            for a in ti.static(range(p.axes)):
+                force[a] = force[a] - rubs * past[a]
         total = self.beside.on_walls(b, origin, own, force)
-        total[3] = ti.cast((strength * volume * lost).sum(), p.exact)
+        total[3] = ti.cast(taken.sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)
         return total
+
+    @ti.func
+    def note_past(self, u, b, origin: ti.template(), own: ti.template(), speed: ti.template(), past: ti.template()):
+        """The velocities (m/s) with which the particles of a block pass the walls before and behind; see `Between`."""
+        p = self.particles
+        for a in ti.static(range(p.axes)):
+            past[a] = p.filled(b) * speed[a]
+        if ti.static(self.poses.moving):
+            tank = self.walls_at(self.units.world(u), origin, own)
+            for a in ti.static(range(p.axes)):
+                past[a] = past[a] - p.filled(b) * tank[a]
 
     @ti.func
     def walls_at(self, w, origin: ti.template(), own: ti.template()):

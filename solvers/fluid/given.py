@@ -70,12 +70,13 @@ class Water:
     `spacing` Δx (m) of the particles and `smoothing` h/Δx; `density` ρ0 (kg/m³); `sound_speed` c0 (m/s) of the weakly
     compressible liquid. `kernel`, `state`, `diffusion` and `viscosity` are names of the registries. `delta` is the
     strength δ of the diffusion of density; `alpha` that of the artificial viscosity, or `kinematic` ν (m²/s) that of
-    laminar flow. `slip`: water slides freely along walls, else it sticks to them. `full`: the tank has no free surface,
-    so that walls may pull, and `background` is the pressure (Pa) that all of the fluid bears besides (Adami, Hu & Adams
-    2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their distances, for water of up to the
-    `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
-    `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z", along
-    which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
+    laminar flow. `slip`: water slides freely along walls, else it sticks to them. `apart`: the distance (m) of walls
+    before and behind that hold it back, too (`solvers.fluid.walls.between`), 0: there are none. `full`: the tank has no
+    free surface, so that walls may pull, and `background` is the pressure (Pa) that all of the fluid bears besides
+    (Adami, Hu & Adams 2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their distances, for
+    water of up to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in
+    space. `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z",
+    along which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
     water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing. `fills`: how
     many particles are in each tank of a world, by their numbers one after the other; (): all are in the first. Water of
     different tanks never meets, though they may overlap in the plane. `model`: "sph", or "linear" or "frozen", for
@@ -95,6 +96,7 @@ class Water:
     alpha: float = 0.01
     kinematic: float = 0.0
     slip: bool = True
+    apart: float = 0.0
     full: bool = False
     background: float = 0.0
     shifting: str = "none"

@@ -93,7 +93,8 @@ class Ships(Rates):
     @ti.func
     def frame(self, w, t):
         """The tank's frame for the cargo: (b_y, b_z, φ̇, φ̈), with the body force per mass b = R(−φ)(g − P̈)."""
-        return ti.cast(ti.Vector([self.hold.felt[w, k] for k in ti.static(range(4))]), self.real)
+        # Number by number: whole vectors are not cast on real ones (`machine.wide`).
+        return ti.Vector([ti.cast(self.hold.felt[w, k], self.real) for k in ti.static(range(4))])
 
     @ti.func
     def kinematics(self, w, time):
@@ -127,7 +128,8 @@ class Ships(Rates):
         if t < self.release[w]:
             self.hold_still(w, t, step)
         else:
-            self.move(w, t, step, ti.cast(kick, self.exact), ti.cast(load, self.exact))
+            pushed = ti.Vector([ti.cast(load[k], self.exact) for k in ti.static(range(3))])
+            self.move(w, t, step, ti.cast(kick, self.exact), pushed)
 
     @ti.func
     def hold_still(self, w, t, step):

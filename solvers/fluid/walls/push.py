@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.fluid.lists import Medium
 from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.fluid.walls.sight import RATE
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
 
@@ -22,6 +23,7 @@ class WallPush:
         self,
         u,
         b,
+        piece,
         ends: ti.template(),
         own: ti.template(),
         origin: ti.template(),
@@ -33,9 +35,10 @@ class WallPush:
         fill: ti.template(),
         taken: ti.template(),
     ):
-        """Add what the dummies of the entries between two `ends` of a list do to a block.
+        """Add what the dummies of a piece, the entries between two `ends` of a list, do to a block.
 
-        `fill` are sums of `Fullness`, `taken` the powers that viscosity and dummies take."""
+        `fill` are sums of `Fullness`, `taken` the powers that viscosity and dummies take. Piece 0 is the tank, the
+        others are parts in it."""
         p, c, lists = self.particles, self.constants, self.lists
         shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), c.strength(), p.gases(b)
         squeezed = 1.0 + gas * p.load(p.excess, b)  # of air as heavy as before in less volume
@@ -45,6 +48,7 @@ class WallPush:
             felt = self.walls.of_air(w, self.walls.felt(w, b))
             for a in ti.static(range(p.axes)):
                 weighs[a] += (gas * squeezed * c.get("air_density")) * felt[a]
+        turning = self.turning(u, piece)
         for k in range(ends[0], ends[1]):
             j = lists.beside.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -102,9 +106,24 @@ class WallPush:
                         heavy *= c.of("strength", gas)
                     for a in ti.static(range(p.axes)):
                         wall[a] += (strength * heavy) * slides[a]
+                    if ti.static(self.poses.rotating or self.bodies.moving):
+                        # The load is booked at the water's place, so that the wall moves as it would there.
+                        lags[0] = lags[0] - turning * apart[1]
+                        lags[1] += turning * apart[0]
                     taken[0] += heavy * dot(slides, lags)
             for a in ti.static(range(p.axes)):
                 wall[a] += along * apart[a]
+
+    @ti.func
+    def turning(self, u, piece):
+        """The rate of turning (rad/s) over the earth of the tank, piece 0, or of a part in it, as the step starts."""
+        rate, w = ti.cast(0.0, self.particles.real), self.lists.units.world(u)
+        if ti.static(self.poses.rotating):
+            rate = ti.cast(self.poses.walls[5][w], self.particles.real)
+        if ti.static(self.bodies.moving):  # noqa: SIM102 (compiled only where parts move)
+            if piece > 0:
+                rate += ti.cast(self.bodies.pose[w, piece - 1, RATE], self.particles.real)
+        return rate
 
     @ti.func
     def wall_pressure(self, b, lane, gas: ti.template(), pressure: ti.template()):

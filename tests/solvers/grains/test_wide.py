@@ -4,6 +4,14 @@ import numpy as np
 import pytest
 
 from solvers.machine import wide
+from solvers.motion import Roll, Sway, Tilt
+from solvers.ship.body import Body
+from solvers.ship.loads import Floating
+from solvers.ship.motion import Radiation, RollDamping, Ship
+from solvers.ship.section import box as hull
+from solvers.ship.vessel import Vessel
+from solvers.ship.water import Water
+from solvers.ship.waves import regular
 from tests.oracles.scenes import box, material, simulation
 
 RADIUS, WIDE, STEPS = 1.5e-3, 24e-3, 1500
@@ -77,6 +85,42 @@ def test_every_law_and_integrator_is_right_on_real_vectors(models):
         np.testing.assert_allclose(other["position"], one["position"], atol=0.02 * RADIUS)
     else:
         agree(one, other)
+
+
+def afloat(handover):
+    """Two barges in waves, each with such a tank."""
+    load = Floating(
+        hull(0.34, 0.30), Water(), (0.0, 0.11), regular(0.02, 4.4, Water()), np.array([[-30.0j, -400.0, 2.0j]])
+    )
+    answers = Radiation(np.diag([40.0, 52.0, 0.2]), np.diag([20.0, 100.0, 0.05]))
+    ship = Ship(Body(37.0, (0.004, 0.09), 0.6), load, answers, (0.0, 0.11), RollDamping(0.2, 0.3))
+    return [Vessel(ship, (0.0, 0.02), handover=handover)] * 2
+
+
+@pytest.mark.skipif(not wide.has_wide_registers(), reason="kernels are on real vectors where there is AVX-512 only")
+def test_real_vectors_bear_a_ship_in_mixed_precision():
+    run = throw(True, tangential="mindlin", precision="mixed", vessels=afloat(None))
+    assert np.isfinite(ended(run, 20)["position"]).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("precision", ["mixed", "f32"])
+@pytest.mark.parametrize(
+    "carried",
+    [
+        {"vessels": afloat(None)},
+        {"vessels": afloat(0.01)},
+        {"motions": [(Roll(0.2, 0.7), Sway(0.01, 1.5))] * 2},
+        {"motions": [(Tilt(0.5, 0.1),)] * 2},
+        {},
+    ],
+    ids=["afloat", "afloat in steps", "swayed", "tilted", "at rest"],
+)
+def test_real_vectors_bear_every_carrier_in_every_precision(carried, precision):
+    """Whole vectors may not change their precision: a ship with grains once ended the process."""
+    one, other = (thrown(pays, tangential="mindlin", precision=precision, **carried) for pays in (False, True))
+    np.testing.assert_allclose(other["position"], one["position"], atol=0.02 * RADIUS)
+    np.testing.assert_allclose(other["pose"], one["pose"], atol=1e-5)
 
 
 @pytest.mark.slow

@@ -37,6 +37,7 @@ def check_water(preset: Whole) -> None:
         return
     _check_company(preset)
     _check_models(water)
+    _check_between(preset)
     _check_given(preset)
     if water.depth is not None:
         _check_depth(water, tank)
@@ -98,6 +99,21 @@ def _check_models(water: Water) -> None:
         raise LabError(f'water.alpha: goes with an artificial viscosity, not with viscosity = "{viscosity}".')
     if water.diffusion == "none" and water.delta:
         raise LabError('water.delta: there is no diffusion of density with diffusion = "none".')
+
+
+def _check_between(preset: Whole) -> None:
+    """Raise LabError for walls before and behind that the water does not stick to, or whose distance is not known."""
+    water = preset.water
+    if not water.between_walls:
+        return
+    if (water.viscosity or SCHEMES[water.scheme].viscosity) not in LAMINAR or water.slip:
+        raise LabError(
+            'water.between_walls: goes with viscosity = "laminar" and slip = false; set both or leave it out.'
+        )
+    if preset.tank.thickness is None:
+        raise LabError("tank.thickness: missing; with water.between_walls it is how far those walls are apart.")
+    if preset.air is not None:
+        raise LabError("water.between_walls: is for water alone; leave out either this or [air].")
 
 
 def _check_depth(water: Water, tank: Tank) -> None:

@@ -58,6 +58,7 @@ def liquid(preset: Wet) -> given.Water:
         alpha=scheme.alpha if water.alpha is None else water.alpha,
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
+        apart=preset.thickness if water.between_walls else 0.0,
         full=water.full,
         background=water.background_pressure or 0.0,
         shifting=water.shifting,

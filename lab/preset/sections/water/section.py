@@ -102,6 +102,13 @@ class Water:
         Doc('Viscosity of the liquid, for viscosity = "laminar" or, beside air, "laminar-stress".'),
     ] = None
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
+    between_walls: Annotated[
+        bool,
+        Doc(
+            "Whether walls before and behind, the tank's thickness apart, hold the water back as well, by the friction "
+            'of laminar flow between them; with viscosity = "laminar" and water that sticks to walls.'
+        ),
+    ] = False
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
     background_pressure: Annotated[
         Annotated[float, Unit("Pa"), Interval(ge=0)] | None,
