@@ -76,11 +76,11 @@ class Water:
     (Adami, Hu & Adams 2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their distances, for
     water of up to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in
     space. `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z",
-    along which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
-    water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing. `fills`: how
-    many particles are in each tank of a world, by their numbers one after the other; (): all are in the first. Water of
-    different tanks never meets, though they may overlap in the plane. `model`: "sph", or "linear" or "frozen", for
-    which see `solvers.liquid`: then waves have the share `swing_damping` of the critical damping.
+    along which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name
+    of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing.
+    `fills`: how many particles are in each tank of a world, by their numbers one after the other; (): all are in the
+    first. Water of different tanks never meets, though they may overlap in the plane. `model`: "sph", or "linear" or
+    "frozen", for which see `solvers.liquid`: then waves have the share `swing_damping` of the critical damping.
     `added_mass`: "layer" or "none", whether a ship has the answer of the walls' dummies on her own side.
     """
 
