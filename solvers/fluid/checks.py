@@ -12,6 +12,7 @@ CREATED = 0.1  # of the energy exchanged: what may be missing from the account b
 LEAST = 1e-3  # Mach number of water that has so little energy that none can be missed
 SQUEEZED = "use a higher air.sound_speed, or a smaller water.spacing"
 REMEDY = "use a higher water.sound_speed, a smaller water.spacing, or check the motion's amplitude"
+LIFTED = 'water.shifting = "delta-plus" lifts water below a surface; take "delta-plus-momentum", or none'
 
 
 def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
@@ -50,8 +51,10 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
     raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {remedy}.")
 
 
-def check_water(rows: dict[str, np.ndarray], start: np.ndarray | float, time: float, least: float = 0.0) -> None:
-    """Raise BadState if a particle has left a closed tank, or if energy has been created.
+def check_water(
+    rows: dict[str, np.ndarray], start: np.ndarray | float, time: float, least: float = 0.0, remedy: str = REMEDY
+) -> None:
+    """Raise BadState if a particle has left a closed tank, or if energy has been created, for which there is a remedy.
 
     `rows` are the quantities at `time` (s), `start` (W,) J the energy at the start, NaN if unknown. Up to `least` (J)
     does not count: as water is first set in motion, the account is a step late and most of what there is.
@@ -62,7 +65,7 @@ def check_water(rows: dict[str, np.ndarray], start: np.ndarray | float, time: fl
         )
     exchanged = sum(np.abs(rows[f"water_{name}"]) for name in ("work", "viscous", "diffusive", "kinetic"))
     for w in np.flatnonzero(residual(rows, start) > CREATED * exchanged + 1e-3 * np.abs(start) + least):
-        raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {REMEDY}.")
+        raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {remedy}.")
 
 
 def outside(place: np.ndarray, box: tuple[np.ndarray, np.ndarray] | None) -> np.ndarray:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.checks import CREATED, check_water, outside, refuse_state
+from solvers.fluid.checks import CREATED, LIFTED, check_water, outside, refuse_state
 from solvers.fluid.given import VELOCITY_Z, Water
 from solvers.fluid.grid import watched_box
 from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE
@@ -126,6 +126,8 @@ def test_energy_from_nothing_stops_the_run():
     assert "gained energy from nothing" in refused(check_water, more, START, 1.5)
     check_water(more, START, 1.5, 0.02 * most)
     check_water(more, np.nan, 1.5)  # the start is unknown
+    with pytest.raises(BadState, match="t = 1.5 s; water.shifting = .*delta-plus-momentum"):
+        check_water(more, START, 1.5, 0.0, LIFTED)
 
 
 def test_what_is_no_number_stops_the_run():

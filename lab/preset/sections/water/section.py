@@ -117,7 +117,10 @@ class Water:
             "without it 0.3 of the air's own pressure, at most ρ U², and none where there is no air."
         ),
     ] = None
-    shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
+    shifting: Annotated[
+        Literal[*SHIFTING],
+        Doc('How particles are shifted to even their distances; below a free surface take "delta-plus-momentum".'),
+    ] = "none"
     start: Annotated[
         Literal[*STARTS],
         Doc("How the particles are laid: packed evenly up to walls and plates of any slant, or as a square lattice."),
