@@ -126,7 +126,7 @@ def test_energy_from_nothing_stops_the_run():
     assert "gained energy from nothing" in refused(check_water, more, START, 1.5)
     check_water(more, START, 1.5, 0.02 * most)
     check_water(more, np.nan, 1.5)  # the start is unknown
-    with pytest.raises(BadState, match="t = 1.5 s; water.shifting = .*delta-plus-momentum"):
+    with pytest.raises(BadState, match=r"t = 1.5 s; water\.shifting = .*delta-plus-momentum"):
         check_water(more, START, 1.5, 0.0, LIFTED)
 
 
