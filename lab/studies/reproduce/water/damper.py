@@ -64,19 +64,23 @@ NUMBERS = {"axle_largest_roll": ("deg", largest_roll), "roll_later": ("s", later
 
 
 def figure(found: Found) -> Figure:
-    """The roll of the empty tank and of those with water, beside the record."""
+    """The roll of the empty tank and of those with water, or with another liquid alone, beside the record."""
     runs = {label: outcomes[0] for label, outcomes in found.items()}
     wet = [label for label in runs if label != DRY]
-    drawing, (upper, lower) = canvas((SIZE[0], 5.0), 2, 1, sharex=True)
-    record = drawn(upper, MEASURED)
-    for axes, column, labels in ((upper, EMPTY, [DRY]), (lower, WATER, wet)):
+    panels = (
+        [(EMPTY, "measured", [DRY]), (WATER, "measured", wet)] if DRY in runs else [(EMPTY, "measured, empty", wet)]
+    )
+    drawing, axes_of = canvas((SIZE[0], 2.5 * len(panels)), len(panels), 1, sharex=True)
+    named = {}
+    for axes, (column, words, labels) in zip(np.atleast_1d(axes_of), panels, strict=True):
+        record = drawn(axes, MEASURED)
         if record is not None:
-            axes.plot(record[TIME], record[column], color="black", lw=0.8, label="measured")
-        for label, colour in zip(labels, COLOURS[column == WATER :], strict=False):
-            axes.plot(*roll(runs[label]), color=colour, lw=0.9, ls="--" if column == EMPTY else "-", label=label)
+            axes.plot(record[TIME], record[column], color="black", lw=0.8, label=words)
+        for label, colour in zip(labels, COLOURS[len(panels) - 1 if DRY not in labels else 0 :], strict=False):
+            axes.plot(*roll(runs[label]), color=colour, lw=0.9, ls="--" if label == DRY else "-", label=label)
         axes.set_ylabel("roll (deg)")
-    lower.set_xlabel("time (s)")
-    (lines, names), (more, further) = (axes.get_legend_handles_labels() for axes in (upper, lower))
-    named = dict(zip([*names, *further], [*lines, *more], strict=True))
+        lines, words = axes.get_legend_handles_labels()
+        named |= dict(zip(words, lines, strict=True))
+    axes.set_xlabel("time (s)")
     drawing.legend(named.values(), named.keys(), loc=BELOW, ncols=4)
     return drawing
