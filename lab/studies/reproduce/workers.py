@@ -16,13 +16,14 @@ from multiprocessing.connection import wait as wait_for
 from pathlib import Path
 
 from lab.base.errors import LabError
-from lab.base.interrupt import handle_signals
+from lab.base.interrupt import SIGNALS, handle_signals
 from lab.base.progress import Progress
 from lab.studies.reproduce.runs import Batch, carry_out, outcomes
 from solvers.machine import runtime
 
 BROKEN = "a process that ran a batch was ended from outside, maybe for want of memory"
 GRACE = 60.0  # s that a worker has to save its state when it is stopped
+_asked: list[bool] = []  # of a worker: whether it was asked to stop while it had no work
 
 
 def carry_out_all(batches: Mapping[Path, Batch], progress: Progress) -> Iterator[Path]:
@@ -81,21 +82,43 @@ def _hand_out(
     while len(running) < cores and (following := next(left, None)):
         folder, batch = following
         progress.say(f"{named(folder)} …")
-        running[workers.submit(carry_out, batch, folder, True)] = folder
+        running[workers.submit(_work, batch, folder)] = folder
 
 
 def _begin() -> None:
     """Set up a worker: use one core, leave Ctrl-C to the parent process, and end with the parent."""
     runtime.use_cores(1)
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be deaf to it
-    handle_signals(patient=True)  # who ends all processes asks this one twice
+    signal.signal(signal.SIGINT, _be_asked)  # what runs in the background would be deaf to it
     if hasattr(os, "setpgrp"):
         os.setpgrp()
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
+def _work(batch: Batch, folder: Path) -> None:
+    """Run a batch in a worker, unless it was asked to stop. Only at work does a signal interrupt it.
+
+    While it waits for work an interrupt would end it with a traceback; it ends with the parent's queue.
+    """
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    handle_signals(patient=True)  # who ends all processes asks this one twice
+    if _asked:
+        raise KeyboardInterrupt
+    try:
+        carry_out(batch, folder, True)
+    finally:
+        for number, act in before.items():
+            signal.signal(number, act)
+
+
+def _be_asked(*_: object) -> None:
+    """Remember that a worker without work was asked to stop."""
+    _asked.append(True)
+
+
 def _end_with_parent() -> None:
     wait_for([parent_process().sentinel])
+    if signal.getsignal(signal.SIGINT) is _be_asked:
+        os._exit(1)
     os.kill(os.getpid(), signal.SIGINT)
     time.sleep(GRACE)
     os._exit(1)

@@ -145,6 +145,31 @@ def test_batches_run_side_by_side_stop_and_go_on(tmp_path):
     assert "## Guided fall" in text and "## Swelling" in text and "Not complete" not in text
 
 
+IDLE = """
+import os, signal, time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import active_children, get_context
+from lab.studies.reproduce import workers
+
+if __name__ == "__main__":
+    with ProcessPoolExecutor(2, get_context("spawn"), workers._begin) as pool:
+        list(pool.map(time.sleep, [0.5, 0.5]))
+        for child in active_children():
+            os.kill(child.pid, signal.SIGINT)
+        stopped = pool.submit(workers._work, None, None)
+        print(type(stopped.exception()).__name__, len(active_children()))
+"""
+
+
+def test_a_worker_without_work_is_asked_to_stop_and_says_nothing(tmp_path):
+    """It takes no work after it, and leaves when the others do; it once said a traceback on Ctrl-C."""
+    script = tmp_path / "idle.py"
+    script.write_text(IDLE)
+    ended = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=120.0)
+    assert ended.stdout.split() == ["KeyboardInterrupt", "2"]
+    assert "Traceback" not in ended.stderr and ended.returncode == 0
+
+
 def test_shared_runs_of_two_experiments_are_run_once(tmp_path, monkeypatch):
     ran = []
     monkeypatch.setattr(workers, "carry_out", lambda batch, folder, quiet: ran.append(folder.relative_to(tmp_path)))
