@@ -169,18 +169,6 @@ class Scene:
         return 0 if self.water is None else self.drops.shape[1]
 
     @property
-    def moved(self) -> int:
-        """Number of grains and of particles of water that are moved in a world; a liquid without particles has none."""
-        flows = self.water is not None and self.water.model == "sph"
-        return self.radius.shape[1] + (self.particles if flows else 0)
-
-    @property
-    def work(self) -> int:
-        """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
-        water = self.moved - self.radius.shape[1]
-        return max(self.worlds, self.radius.size + self.worlds * water // self.water_pace)
-
-    @property
     def span(self) -> float:
         """Largest distance (m) of a corner of a tank from the tank's origin."""
         return float(max(np.linalg.norm(tank.outline, axis=1).max() for tank in self.tanks))

@@ -25,7 +25,7 @@ from solvers.tank.walls import Walls
 from solvers.time import watch
 from solvers.time.changes import up_to_change
 from solvers.time.clock import Clock
-from solvers.time.schedules import SCHEDULES, choose_schedule, units_a_world
+from solvers.time.schedules import SCHEDULES, choose_schedule, moved, units_a_world
 from solvers.time.sequence import Sequence
 from solvers.time.settling import settle
 
@@ -55,11 +55,11 @@ class Simulation:
     ):
         self.threads = threads or runtime.available_cores()
         worlds, grains = scene.radius.shape
-        asked = scene.precision, scene.moved > grains, worlds * scene.moved
+        asked = scene.precision, moved(scene) > grains, worlds * moved(scene)
         self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, *asked)
         runtime.initialise(self.threads, self.arch, scene.precision)
         self.scene, self.dt, self.longest_step = scene, scene.time_step(), scene.longest_step(1.0)  # s; at set-up
-        count = scene.moved
+        count = moved(scene)
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius

@@ -30,7 +30,7 @@ from solvers.machine.runtime import available_cores, choose_arch
 from solvers.machine.state import without_worlds
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from solvers.time.schedules import choose_schedule, units_a_world
+from solvers.time.schedules import choose_schedule, units_a_world, work
 
 # Steps per call of the solver times grains per world. It limits the delay after Ctrl-C to some tenths of a second for
 # each world on a core. It must not depend on other runs or on the clock: grains may be renumbered between calls.
@@ -139,7 +139,7 @@ class Batch:
         self._duration, self._record = preset.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch, stretch=stretch(preset))
         self._settling = settling(preset)
-        self._a_call = GRAIN_STEPS_A_CALL * runs[0].scene.worlds // runs[0].scene.work
+        self._a_call = GRAIN_STEPS_A_CALL * runs[0].scene.worlds // work(runs[0].scene)
         self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:
@@ -181,7 +181,7 @@ class Batch:
         steps = round(1.0 / (rate * self._simulation.dt))
         samples = max(1, round(self._duration * rate))
         a_frame = max(1, round(rate / self._record.picture_rate))
-        cost = self._duration * sum(run.scene.work for run in self.runs)
+        cost = self._duration * sum(work(run.scene) for run in self.runs)
         self.progress.start("running", self._duration, cost)
         self._counted = time.perf_counter()
         for k in range(self._recorders[0].rows[0], samples + 1):
@@ -259,9 +259,9 @@ class Batch:
 
     def _count_cost(self) -> None:
         """Share the wall-clock time since the last count among the runs by their work."""
-        now, whole = time.perf_counter(), sum(run.scene.work for run in self.runs)
+        now, whole = time.perf_counter(), sum(work(run.scene) for run in self.runs)
         for recorder, run in zip(self._recorders, self.runs, strict=True):
-            recorder.wall_s += (now - self._counted) * run.scene.work / whole
+            recorder.wall_s += (now - self._counted) * work(run.scene) / whole
             recorder.grain_steps = updates(run.scene, self._simulation.steps)
         self._counted = now
 

@@ -27,6 +27,7 @@ from solvers.grains.pressing import UNTOUCHED
 from solvers.machine import runtime
 from solvers.machine.errors import BadState, Unavailable
 from solvers.simulation import Simulation
+from solvers.time.schedules import work
 
 PICTURE_INTERVAL = 0.03  # s; shortest time between two frames sent
 IDLE = 0.01  # s between checks for messages while paused
@@ -73,7 +74,7 @@ class Worker:
         self._live, self._pipe, self._outbox = live, pipe, outbox
         self._going, self._pieces, self._pace, self._ended = False, 0, 1.0, False
         self._changes: list[tuple[str, float]] = []
-        self._most = max(1, GRAIN_STEPS_A_CALL // live.run.scene.work)
+        self._most = max(1, GRAIN_STEPS_A_CALL // work(live.run.scene))
         self._sent = -math.inf
         self._anchor = (time.monotonic(), live.time)
         self._factor = 0.0

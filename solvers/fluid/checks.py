@@ -52,9 +52,9 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
 
 
 def check_water(
-    rows: dict[str, np.ndarray], start: np.ndarray | float, time: float, least: float = 0.0, remedy: str = REMEDY
+    rows: dict[str, np.ndarray], start: np.ndarray | float, time: float, least: float = 0.0, lifts: bool = False
 ) -> None:
-    """Raise BadState if a particle has left a closed tank, or if energy has been created, for which there is a remedy.
+    """Raise BadState if a particle has left a closed tank, or energy been created, as by shifting that `lifts`.
 
     `rows` are the quantities at `time` (s), `start` (W,) J the energy at the start, NaN if unknown. Up to `least` (J)
     does not count: as water is first set in motion, the account is a step late and most of what there is.
@@ -65,6 +65,7 @@ def check_water(
         )
     exchanged = sum(np.abs(rows[f"water_{name}"]) for name in ("work", "viscous", "diffusive", "kinetic"))
     for w in np.flatnonzero(residual(rows, start) > CREATED * exchanged + 1e-3 * np.abs(start) + least):
+        remedy = LIFTED if lifts else REMEDY
         raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {remedy}.")
 
 

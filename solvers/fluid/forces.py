@@ -125,8 +125,7 @@ class Forces:
 
     @ti.func
     def push_block(self, u, b, listed, kick):
-        """As `push`, for a block; returns its force (y, z; N/m) and moment (N) on the walls, and the powers (W/m) that
-        viscosity and dummies take."""
+        """As `push`, for a block: force (N/m) and moment (N) on walls, powers (W/m) that viscosity and dummies take."""
         p, c, lists = self.particles, self.constants, self.lists
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
@@ -227,8 +226,7 @@ class Forces:
         factor, density = c.get("slope"), c.of("density", gas)
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
         past, rubbed = [p.zeros() for _ in ti.static(range(p.axes))], p.zeros()  # the walls before and behind
-        if ti.static(c.rubbed):
-            self.note_past(u, b, origin, own, speed, past)
+        self.beside.note_past(u, b, origin, own, speed, past)
         for a in ti.static(range(p.axes)):
             acceleration = lightness * (push[a] + strength * drag[a] + wall[a])
             if ti.static(c.rubbed):
@@ -241,7 +239,7 @@ class Forces:
             if ti.static(c.rubbed):
                 rubbed += past[a] * (past[a] + (0.5 * kick) * gain)
         if ti.static(self.poses.moving and not self.bodies.moving):
-            wall_speed = self.walls_at(self.units.world(u), origin, own)
+            wall_speed = self.beside.walls_at(self.units.world(u), origin, own)
             held += dot(own_push, wall_speed)
         if ti.static(c.tense):
             self.tension.note(b, [factor * inwards[a] for a in ti.static(range(p.axes))])
@@ -262,28 +260,6 @@ class Forces:
         total[3] = ti.cast(taken.sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)
         return total
-
-    @ti.func
-    def note_past(self, u, b, origin: ti.template(), own: ti.template(), speed: ti.template(), past: ti.template()):
-        """The velocities (m/s) with which the particles of a block pass the walls before and behind; see `Between`."""
-        p = self.particles
-        for a in ti.static(range(p.axes)):
-            past[a] = p.filled(b) * speed[a]
-        if ti.static(self.poses.moving):
-            tank = self.walls_at(self.units.world(u), origin, own)
-            for a in ti.static(range(p.axes)):
-                past[a] = past[a] - p.filled(b) * tank[a]
-
-    @ti.func
-    def walls_at(self, w, origin: ti.template(), own: ti.template()):
-        """The velocities (m/s) that the tank's wall would have at the places of a block, at the start of the step."""
-        p = self.particles
-        speed = [p.ones() * ti.cast(self.poses.walls[3 + a][w], p.real) for a in ti.static(range(p.axes))]
-        if ti.static(self.poses.rotating):
-            rate = ti.cast(self.poses.walls[5][w], p.real)
-            speed[0] = speed[0] - rate * (own[1] + ti.cast(origin[1], p.real))
-            speed[1] += rate * (own[0] + ti.cast(origin[0], p.real))
-        return speed
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):

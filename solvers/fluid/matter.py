@@ -6,17 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census, Pool
-from solvers.fluid.checks import (
-    LEAST,
-    LIFTED,
-    REMEDY,
-    check_water,
-    refuse_reduced,
-    refuse_scene,
-    refuse_state,
-    residual,
-    suspects,
-)
+from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scene, refuse_state, residual, suspects
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
@@ -258,8 +248,8 @@ class WaterMatter(Matter):
         # A particle that goes round falls for ever; what tension and cohesion hold, and vents take, is not known.
         # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 that nothing has given.
         unknown = time == 0.0 or self.water.periodic or not self.constants.accounted or self.vent.acts
-        lifted = self.water.shifting == "delta-plus" and not (self.water.full or self.water.air)
-        check_water(rows, np.nan if unknown else self.start, time, self.least, LIFTED if lifted else REMEDY)
+        lifts = self.water.shifting == "delta-plus" and not (self.water.full or self.water.air)
+        check_water(rows, np.nan if unknown else self.start, time, self.least, lifts)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
         """Raise BadState for a world that was stopped at `time` (s)."""

@@ -164,3 +164,25 @@ class WallPush:
         total[0], total[1] = 0.0 - force[0], 0.0 - force[1]
         total[2] = 0.0 - (ti.cast(turning.sum(), p.exact) + y * force[1] - z * force[0])
         return total
+
+    @ti.func
+    def note_past(self, u, b, origin: ti.template(), own: ti.template(), speed: ti.template(), past: ti.template()):
+        """The velocities (m/s) with which the particles of a block pass the walls before and behind; see `Between`."""
+        p = self.particles
+        for a in ti.static(range(p.axes if self.constants.rubbed else 0)):
+            past[a] = p.filled(b) * speed[a]
+        if ti.static(self.constants.rubbed and self.poses.moving):
+            tank = self.walls_at(self.lists.units.world(u), origin, own)
+            for a in ti.static(range(p.axes)):
+                past[a] = past[a] - p.filled(b) * tank[a]
+
+    @ti.func
+    def walls_at(self, w, origin: ti.template(), own: ti.template()):
+        """The velocities (m/s) that the tank's wall would have at the places of a block, at the start of the step."""
+        p = self.particles
+        speed = [p.ones() * ti.cast(self.poses.walls[3 + a][w], p.real) for a in ti.static(range(p.axes))]
+        if ti.static(self.poses.rotating):
+            rate = ti.cast(self.poses.walls[5][w], p.real)
+            speed[0] = speed[0] - rate * (own[1] + ti.cast(origin[1], p.real))
+            speed[1] += rate * (own[0] + ti.cast(origin[0], p.real))
+        return speed

@@ -39,3 +39,15 @@ def units_a_world(schedule: str, worlds: int, grains: int, threads: int) -> int:
     if schedule == "per-grain":
         return max(1, grains)
     return max(1, min(threads // worlds, grains // 2)) if schedule == "per-band" else 1
+
+
+def moved(scene) -> int:
+    """Number of grains and of particles of water that are moved in a world; a liquid without particles has none."""
+    flows = scene.water is not None and scene.water.model == "sph"
+    return scene.radius.shape[1] + (scene.particles if flows else 0)
+
+
+def work(scene) -> int:
+    """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
+    water = moved(scene) - scene.radius.shape[1]
+    return max(scene.worlds, scene.radius.size + scene.worlds * water // scene.water_pace)

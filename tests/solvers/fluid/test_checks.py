@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.checks import CREATED, LIFTED, check_water, outside, refuse_state
+from solvers.fluid.checks import CREATED, check_water, outside, refuse_state
 from solvers.fluid.given import VELOCITY_Z, Water
 from solvers.fluid.grid import watched_box
 from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE
@@ -127,7 +127,7 @@ def test_energy_from_nothing_stops_the_run():
     check_water(more, START, 1.5, 0.02 * most)
     check_water(more, np.nan, 1.5)  # the start is unknown
     with pytest.raises(BadState, match=r"t = 1.5 s; water\.shifting = .*delta-plus-momentum"):
-        check_water(more, START, 1.5, 0.0, LIFTED)
+        check_water(more, START, 1.5, 0.0, lifts=True)
 
 
 def test_what_is_no_number_stops_the_run():

@@ -15,6 +15,7 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water as Sea
 from solvers.ship.waves import regular
 from solvers.simulation import Simulation
+from solvers.time.schedules import moved, work
 from tests.oracles.voyages import hull_energy
 from tests.oracles.water import GRAVITY, still
 from tests.solvers.motion.test_water_aboard import ADDED, AXIS, BARE, DAMPED, DEEP, HIGH, HOLD, LENGTH, ROWS, WIDE
@@ -134,7 +135,7 @@ def test_liquid_in_a_ship_whose_world_is_cut_into_bands(model):
 
 def test_liquid_without_particles_is_not_cut():
     scene = at_sea("linear")
-    assert scene.particles > 0 and scene.moved == 0 and scene.work == 1
+    assert scene.particles > 0 and moved(scene) == 0 and work(scene) == 1
 
 
 def at_sea(model: str, **changes) -> Scene:
