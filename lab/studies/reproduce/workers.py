@@ -99,11 +99,11 @@ def _work(batch: Batch, folder: Path) -> None:
 
     While it waits for work an interrupt would end it with a traceback; it ends with the parent's queue.
     """
-    before = {number: signal.getsignal(number) for number in SIGNALS}
-    handle_signals(patient=True)  # who ends all processes asks this one twice
     if _asked:
         raise KeyboardInterrupt
+    before = {number: signal.getsignal(number) for number in SIGNALS}
     try:
+        handle_signals(patient=True)  # who ends all processes asks this one twice
         carry_out(batch, folder, True)
     finally:
         for number, act in before.items():

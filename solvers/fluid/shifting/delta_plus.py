@@ -14,8 +14,8 @@ class DeltaPlus:
     Limits: the shift is one of places alone: moment of momentum, volume and energy are not corrected for it. A square
     patch of water that turns gains 2.6 % of its moment of momentum within two radians at 32 particles across. Below a
     free surface the large part across it is not wholly taken off where its direction is not, so that water rises:
-    93 mm in a tank by 0.8 % within 0.4 s, before the watch ends the run. Such growth of volume is known (Lyu & Sun
-    2022). For tanks with a free surface take "delta-plus-momentum", which does not shift there.
+    93 mm in a tank by 0.8 % within 0.4 s without the watch, which ends the run after 0.06 s. Such growth of volume is
+    known (Lyu & Sun 2022). For tanks with a free surface take "delta-plus-momentum", which does not shift there.
 
     Units: δu and U m/s, h and Δx m.
     """

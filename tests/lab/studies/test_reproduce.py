@@ -151,9 +151,14 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import active_children, get_context
 from lab.studies.reproduce import workers
 
+def who(_):
+    time.sleep(0.2)
+    return os.getpid()
+
 if __name__ == "__main__":
     with ProcessPoolExecutor(2, get_context("spawn"), workers._begin) as pool:
-        list(pool.map(time.sleep, [0.5, 0.5]))
+        while len(set(pool.map(who, range(4)))) < 2:  # until both have begun
+            pass
         for child in active_children():
             os.kill(child.pid, signal.SIGINT)
         stopped = pool.submit(workers._work, None, None)
