@@ -128,8 +128,7 @@ class Ships(Rates):
         if t < self.release[w]:
             self.hold_still(w, t, step)
         else:
-            pushed = ti.Vector([ti.cast(load[k], self.exact) for k in ti.static(range(3))])
-            self.move(w, t, step, ti.cast(kick, self.exact), pushed)
+            self.move(w, t, step, ti.cast(kick, self.exact), ti.cast(load, self.exact))
 
     @ti.func
     def hold_still(self, w, t, step):
