@@ -7,6 +7,7 @@ from solvers.fluid.lists import Medium
 from solvers.fluid.phases.tension import Tension
 from solvers.fluid.state import INSIDE, SPRAY
 from solvers.fluid.surface.fullness import Fullness
+from solvers.fluid.walls.between import Between
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.push import WallPush
 from solvers.machine.state import State
@@ -34,7 +35,7 @@ class Forces:
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         self.fullness = Fullness(arrays, medium.particles, medium.constants)
         self.beside, self.load = WallPush(medium, walls, self.fullness), load
-        self.bodies = medium.lists.bodies
+        self.bodies, self.between = medium.lists.bodies, Between(medium.particles, medium.constants)
         own = arrays.under("water.forces")
         self.counts = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
         self.lost, self.held, self.work = self.counts
@@ -225,19 +226,19 @@ class Forces:
                         self.bodies.bear(u, piece - 1, load)
         factor, density = c.get("slope"), c.of("density", gas)
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
-        past, rubbed = [p.zeros() for _ in ti.static(range(p.axes))], p.zeros()  # the walls before and behind
-        self.beside.note_past(u, b, origin, own, speed, past)
+        past = [p.zeros() for _ in ti.static(range(p.axes))]  # the walls before and behind
+        hold = [p.zeros() for _ in ti.static(range(p.axes))]  # their drag
+        if ti.static(c.rubbed):
+            self.beside.note_past(u, b, origin, own, speed, past)
+            self.between.hold_back(b, past, kick, hold)
         for a in ti.static(range(p.axes)):
-            acceleration = lightness * (push[a] + strength * drag[a] + wall[a])
-            if ti.static(c.rubbed):
-                acceleration = acceleration - c.get("rub") * past[a]
+            acceleration = lightness * (push[a] + strength * drag[a] + wall[a]) - hold[a]
             p.store(p.acceleration[a], b, acceleration)
             # Velocities are half a kick behind the places at which the dummies push.
             gain = acceleration + self.beside.weight(u, b, a)
             held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
             lost = lost - drag[a] * ((0.5 * kick) * gain)
-            if ti.static(c.rubbed):
-                rubbed += past[a] * (past[a] + (0.5 * kick) * gain)
+            past[a] += (0.5 * kick) * gain
         if ti.static(self.poses.moving and not self.bodies.moving):
             wall_speed = self.beside.walls_at(self.units.world(u), origin, own)
             held += dot(own_push, wall_speed)
@@ -252,10 +253,9 @@ class Forces:
         force = self.beside.borne(u, b, [volume * wall[a] for a in ti.static(range(p.axes))])
         taken = strength * volume * lost
         if ti.static(c.rubbed):
-            rubs = c.get("rub") * p.load(p.mass, b)
-            taken += rubs * rubbed
+            taken += p.load(p.mass, b) * dot(hold, past)
             for a in ti.static(range(p.axes)):
-                force[a] = force[a] - rubs * past[a]
+                force[a] = force[a] - p.load(p.mass, b) * hold[a]
         total = self.beside.on_walls(b, origin, own, force)
         total[3] = ti.cast(taken.sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)

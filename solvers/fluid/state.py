@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water
+from solvers.fluid.walls.between import MODES
 from solvers.machine.state import Axis, State, roomy
 from solvers.machine.units import Units
 from solvers.space.axes import PLANE, named
@@ -59,6 +60,7 @@ class Particles:
         shifting,
         air: Air | None = None,
         among: int = 0,
+        narrow: bool = False,
     ):
         self.worlds, self.count, self.lanes = worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
@@ -96,6 +98,10 @@ class Particles:
         if self.two:
             (self.gas,) = own.wide(each, "gas")
             self.pressure_of_air, self.share = own.wide(each, "pressure_of_air", "share", kept=False)
+        self.layers = []  # by mode and axis, m/s: how water passes walls before and behind (`Between`)
+        if narrow:
+            self.layers = [own.wide(each, *named(f"layer_{n}", self.axes)) for n in range(MODES)]
+            self.noted += [field for mode in self.layers for field in mode]
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)
         (self.used,) = own.integers((self.each_world,), "used", below=self.wet + 1)
@@ -130,7 +136,7 @@ class Particles:
             whole[:, : self.wet * self.lanes] = fill
             whole[:, : self.count] = values
             field.from_numpy(whole.reshape(-1, self.lanes))
-        for field in self.acceleration:
+        for field in (*self.acceleration, *(field for mode in self.layers for field in mode)):
             field.fill(0.0)
         self.used.fill(-(-self.count // self.lanes))
 

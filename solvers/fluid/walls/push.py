@@ -169,9 +169,9 @@ class WallPush:
     def note_past(self, u, b, origin: ti.template(), own: ti.template(), speed: ti.template(), past: ti.template()):
         """The velocities (m/s) with which the particles of a block pass the walls before and behind; see `Between`."""
         p = self.particles
-        for a in ti.static(range(p.axes if self.constants.rubbed else 0)):
+        for a in ti.static(range(p.axes)):
             past[a] = p.filled(b) * speed[a]
-        if ti.static(self.constants.rubbed and self.poses.moving):
+        if ti.static(self.poses.moving):
             tank = self.walls_at(self.lists.units.world(u), origin, own)
             for a in ti.static(range(p.axes)):
                 past[a] = past[a] - p.filled(b) * tank[a]

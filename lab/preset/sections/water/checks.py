@@ -93,7 +93,7 @@ def _check_models(water: Water) -> None:
     viscosity = water.viscosity or SCHEMES[water.scheme].viscosity
     if viscosity in LAMINAR and water.kinematic_viscosity is None:
         raise LabError(f'water.kinematic_viscosity: missing for viscosity = "{viscosity}"; {needed("m^2/s")}.')
-    if viscosity not in LAMINAR and water.kinematic_viscosity is not None:
+    if viscosity not in LAMINAR and water.kinematic_viscosity is not None and not water.between_walls:
         raise LabError('water.kinematic_viscosity: goes with viscosity = "laminar"; leave out either.')
     if viscosity in LAMINAR and water.alpha is not None:
         raise LabError(f'water.alpha: goes with an artificial viscosity, not with viscosity = "{viscosity}".')
@@ -102,13 +102,13 @@ def _check_models(water: Water) -> None:
 
 
 def _check_between(preset: Whole) -> None:
-    """Raise LabError for walls before and behind that the water does not stick to, or whose distance is not known."""
+    """Raise LabError for walls before and behind where the viscosity or their distance is not known, or where is air."""
     water = preset.water
     if not water.between_walls:
         return
-    if (water.viscosity or SCHEMES[water.scheme].viscosity) not in LAMINAR or water.slip:
+    if water.kinematic_viscosity is None:
         raise LabError(
-            'water.between_walls: goes with viscosity = "laminar" and slip = false; set both or leave it out.'
+            f"water.kinematic_viscosity: missing; with water.between_walls that of the liquid; {needed('m^2/s')}."
         )
     if preset.tank.thickness is None:
         raise LabError("tank.thickness: missing; with water.between_walls it is how far those walls are apart.")

@@ -99,14 +99,14 @@ class Water:
     ] = None
     kinematic_viscosity: Annotated[
         Annotated[float, Unit("m^2/s"), Interval(gt=0)] | None,
-        Doc('Viscosity of the liquid, for viscosity = "laminar" or, beside air, "laminar-stress".'),
+        Doc('Viscosity of the liquid, for viscosity = "laminar", beside air "laminar-stress", or between_walls.'),
     ] = None
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     between_walls: Annotated[
         bool,
         Doc(
             "Whether walls before and behind, the tank's thickness apart, hold the water back as well, by the friction "
-            'of laminar flow between them; with viscosity = "laminar" and water that sticks to walls.'
+            "of laminar flow between them; with the kinematic_viscosity of the liquid, whatever the viscous law."
         ),
     ] = False
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
