@@ -119,12 +119,15 @@ def _scatter(label: str, peaks: np.ndarray) -> Row:
 
 
 def figure(found: Found, arrivals: Sequence[float], peaks: Sequence[float]) -> Figure:
-    """The pressure about impacts that arrive at times (s), cut off where short hits are; the range of `peaks` (kPa)."""
+    """The pressure about impacts that arrive at times (s), cut off where short hits are; the range of `peaks` (kPa).
+
+    Of the last three runs, of each its first start.
+    """
     drawing, panels = canvas((SIZE[0], 3.6), 1, len(arrivals), sharey=True)
     measured = drawn(panels[0], MEASURED)
     for axes, each in zip(panels, arrivals, strict=True):
         axes.axhspan(*peaks, color=GREY, alpha=0.15, lw=0, label="peaks of a hundred repeats, ± 2 std")
-        for (label, outcomes), colour in zip(found.items(), (BLUE, VERMILION, "0.6"), strict=False):
+        for (label, outcomes), colour in zip(list(found.items())[-3:], (BLUE, VERMILION, "0.6"), strict=False):
             series = outcomes[0].recording.series
             axes.plot(series["time"], 1e-3 * series["gauge_pressure"][:, 0, 0], color=colour, lw=0.9, label=label)
         if measured is not None:
