@@ -4,7 +4,9 @@ from collections.abc import Mapping, Sequence
 
 from pydantic import BaseModel, ConfigDict
 
+from lab.report.numbers import plus_minus
 from lab.studies.reproduce.compare import number_of
+from lab.studies.reproduce.registry import OF_ONE_RUN
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.costs import COSTS, cost
 
@@ -42,6 +44,8 @@ def _cell(column: Column, run: str, outcomes: Sequence[Outcome]) -> str:
     value = number.value
     if value is None or value.value is None:
         return column.missing
+    if number.of in OF_ONE_RUN and value.std is not None:
+        return f"{plus_minus(value.value, value.std)} {value.unit}"
     if not column.shows:
         return number.text()
     return column.shows.format(value.value, error=value.uncertainty, note=value.note)

@@ -85,7 +85,8 @@ class Number:
     @property
     def exact(self) -> bool:
         """Whether it does not vary from bed to bed."""
-        return self.of.startswith(FROZEN) or self.of in registry.OF_ONE_RUN
+        alone = self.value is None or self.value.n < 2
+        return self.of.startswith(FROZEN) or (self.of in registry.OF_ONE_RUN and alone)
 
     def text(self) -> str:
         """For a reader."""

@@ -40,11 +40,15 @@ def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[S
     return lambda outcomes, given: over_worlds([number(outcomes[0], given)], unit)
 
 
+def _of_starts(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[Sequence[Outcome], object], Value]:
+    """As `_alone`, of all the starts of a run: impacts scatter from start to start."""
+    return lambda outcomes, given: over_worlds([number(one, given) for one in outcomes], unit)
+
+
 # Numbers of single runs without scatter from bed to bed; NaN where a run has none.
-OF_ONE_RUN = {
+OF_ONE_RUN = {name: _of_starts(*number) for name, number in impact.NUMBERS.items()} | {
     name: _alone(*number)
     for of in (
-        impact,
         dam_break,
         waves,
         damper,

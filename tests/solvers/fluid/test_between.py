@@ -5,6 +5,7 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.preset.find import load
+from lab.preset.sections.water.liquid import liquid
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME
 from solvers.fluid.walls.between import RATES, SHARES, Between
 from solvers.motion.harmonic import Roll, Sway
@@ -124,3 +125,22 @@ def test_a_rolling_tank_works_on_water_that_its_walls_hold_back():
 def test_walls_that_cannot_be_are_told(changes, words):
     with pytest.raises(LabError, match=words):
         load("sloshing/roll-damper-glycerine", changes)
+
+
+def test_walls_are_a_tanks_length_apart_where_it_has_one():
+    water = liquid(load("sloshing/roll-damper-glycerine", {"axle.length": "0.5 m"}).resolved)
+    assert water.apart == 0.5
+    assert liquid(load("sloshing/roll-damper-glycerine").resolved).apart == 0.062
+
+
+@pytest.mark.parametrize(
+    ("preset", "changes", "words"),
+    [
+        ("ship/ballast-and-grain", {}, "water.between_walls: is for one tank"),
+        ("ship/anti-roll-tank", {"water.model": "frozen"}, 'water.between_walls: water.model = "frozen" has no walls'),
+    ],
+)
+def test_walls_beside_tanks_of_ships_that_cannot_be_are_told(preset, changes, words):
+    narrow = {"water.between_walls": True, "water.kinematic_viscosity": "1e-6 m^2/s", "tank.thickness": "0.3 m"}
+    with pytest.raises(LabError, match=words):
+        load(preset, narrow | changes)

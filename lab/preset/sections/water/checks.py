@@ -110,8 +110,12 @@ def _check_between(preset: Whole) -> None:
         raise LabError(
             f"water.kinematic_viscosity: missing; with water.between_walls that of the liquid; {needed('m^2/s')}."
         )
-    if preset.tank.thickness is None:
+    if liquid.distance_of_walls(preset) is None:
         raise LabError("tank.thickness: missing; with water.between_walls it is how far those walls are apart.")
+    if preset.tanks:
+        raise LabError("water.between_walls: is for one tank, and here are more; leave it out.")
+    if water.model != "sph":
+        raise LabError(f'water.between_walls: water.model = "{water.model}" has no walls; take "sph" or leave it out.')
     if preset.air is not None:
         raise LabError("water.between_walls: is for water alone; leave out either this or [air].")
 

@@ -41,6 +41,15 @@ class Wet(Tanked, Protocol):
     run: Run
 
 
+def distance_of_walls(preset: Wet) -> float | None:
+    """How far (m) the walls before and behind are apart: the tank's length where it has one, else the slab's thickness.
+
+    None where neither is given.
+    """
+    along = preset.axle.length if preset.axle else preset.tank.length
+    return along or preset.tank.thickness
+
+
 def liquid(preset: Wet) -> given.Water:
     """The water of a preset as the solver takes it."""
     water, scheme = preset.water, SCHEMES[preset.water.scheme]
@@ -58,7 +67,7 @@ def liquid(preset: Wet) -> given.Water:
         alpha=scheme.alpha if water.alpha is None else water.alpha,
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
-        apart=preset.thickness if water.between_walls else 0.0,
+        apart=(distance_of_walls(preset) or 0.0) if water.between_walls else 0.0,
         full=water.full,
         background=water.background_pressure or 0.0,
         shifting=water.shifting,
