@@ -11,7 +11,7 @@ MODES = 8
 
 
 def _modes() -> list[tuple[float, float]]:
-    """Shares w_n and rates λ_n (π² ν/b²) of the modes of flow between two walls, those from 2^n on up to 2^(n+1) as one.
+    """Shares w_n and rates λ_n (π² ν/b²) of the modes of flow between two walls, those from 2^n to 2^(n+1) as one.
 
     One by one they are w = 8/(π k)² and k², k odd (Carslaw & Jaeger 1959, § 3.3). A group has the sums of its members'
     w and w/λ, so that friction is exact both of what starts at once and of what flows steadily.

@@ -103,6 +103,23 @@ def test_both_impacts_are_judged_by_arrival_impulse_and_peak():
         assert verdicts[f"{order} impact impulse"] is Verdict.AGREES
 
 
+def test_impacts_of_several_starts_are_judged_by_their_mean_and_its_interval():
+    """Impulses of 170 and 180 Pa s, eight times each, do not differ from 179; 100 and 300 of two starts do not tell."""
+    time = np.arange(0.0, 5.0, 5e-4)
+
+    def hit(impulse: float) -> Outcome:
+        since = time - 2.3738
+        shown = np.where((since >= 0.0) & (since < impulse / 4000.0), 4000.0, 0.0)[:, None, None]
+        return ran("sloshing/impact", time=time, gauge_pressure=shown, gauge_peak=shown)
+
+    for impulses, verdict in (((170.0, 180.0) * 8, Verdict.AGREES), ((100.0, 300.0), Verdict.CANNOT_TELL)):
+        told = experiments("water")["roll-impact"].tell({"starts": [hit(one) for one in impulses]})
+        row = next(row for row in told.rows if row.quantity == "first impact impulse, starts")
+        assert row.verdict is verdict and row.ours.endswith(f"Pa s ({len(impulses)} beds)")
+        cell = told.table[1][told.table[0].index("first impulse")]
+        assert cell.endswith(" Pa s") and float(cell.split()[0]) == pytest.approx(np.mean(impulses), rel=0.02)
+
+
 def test_only_the_last_run_is_judged_and_all_are_in_the_table():
     """A run without an impact first: its cells say so, and no row is about it."""
     time = np.arange(0.0, 5.0, 5e-4)

@@ -102,7 +102,7 @@ def _check_models(water: Water) -> None:
 
 
 def _check_between(preset: Whole) -> None:
-    """Raise LabError for walls before and behind where the viscosity or their distance is not known, or where is air."""
+    """Raise LabError for walls before and behind whose distance, or water whose viscosity, is not known; or for air."""
     water = preset.water
     if not water.between_walls:
         return

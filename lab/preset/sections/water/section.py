@@ -105,8 +105,8 @@ class Water:
     between_walls: Annotated[
         bool,
         Doc(
-            "Whether walls before and behind, the tank's length or thickness apart, hold the water back as well, by the "
-            "friction of laminar flow between them; with the liquid's kinematic_viscosity, whatever the viscous law."
+            "Whether walls before and behind, the tank's length or thickness apart, hold the water back as well, by "
+            "the friction of laminar flow between them; with the liquid's kinematic_viscosity, whatever the viscous law."
         ),
     ] = False
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
