@@ -106,7 +106,7 @@ class Water:
         bool,
         Doc(
             "Whether walls before and behind, the tank's length or thickness apart, hold the water back as well, by "
-            "the friction of laminar flow between them; with the liquid's kinematic_viscosity, whatever the viscous law."
+            "the friction of laminar flow between them; with the liquid's kinematic_viscosity, under any viscous law."
         ),
     ] = False
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
