@@ -31,7 +31,8 @@ class Mover:
         self.walls, self.bodies, self.vent, self.fullness = walls, medium.lists.bodies, vent, fullness
         self.pace = pace
         own = arrays.under("water.mover")
-        self.fastest, self.deviation = own.reals((medium.units.axis,), "fastest", "deviation", kept=False)
+        (self.fastest,) = own.reals((medium.units.axis,), "fastest")
+        (self.deviation,) = own.reals((medium.units.axis,), "deviation", kept=False)
         box = medium.lists.order.grid.watched
         self.spills = box is not None
         if self.spills:

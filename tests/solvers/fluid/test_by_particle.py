@@ -6,9 +6,12 @@ schedule looks at the state only now and then (`solvers.time.schedules.per_grain
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
+from solvers.fluid.given import VOLUME
 from solvers.simulation import Simulation
+from tests.oracles.water import still
 from tests.solvers.fluid import test_step as same
 
 pytestmark = pytest.mark.slow
@@ -32,3 +35,31 @@ test_drop_alone = same.test_a_drop_alone_falls_without_pressure
 test_gravity_changes = same.test_gravity_may_change_while_water_runs
 test_rest = same.test_water_at_rest_weighs_on_the_floor_and_its_gauges
 test_behind_a_wall = same.test_a_wall_pushes_back_what_has_come_through_its_face
+
+
+def test_lists_are_made_anew_at_the_same_steps_after_a_resume():
+    """How fast the fastest particle is decides how long lists last: a run that goes on from a file must know it."""
+    scene, found = still(2.0, 1.0, 0.4, 10, gravity=9.81, schedule="per-grain", drops=falling()), []
+    for cut in (False, True):
+        run = Simulation(scene, threads=1, arch="cpu")
+        if cut:
+            run.restore(found[0])
+        else:
+            run.advance(60)
+            found.append(run.state())
+        for _ in range(40):
+            run.advance(1)
+            found.append(run.snapshot() | {"built": run.water.particles.built[0].to_numpy()})
+        run.close()
+    for went_on, resumed in zip(found[1:41], found[41:], strict=True):
+        for name in ("built", "water_place", "water_velocity"):
+            np.testing.assert_array_equal(went_on[name], resumed[name])
+
+
+def falling() -> np.ndarray:
+    """A square of water beside the middle of a tank, above its floor."""
+    side = (np.arange(20) + 0.5) * 0.02
+    grid = np.stack(np.meshgrid(0.1 + side, 0.3 + side, indexing="ij"), axis=-1).reshape(-1, 2)
+    drops = np.zeros((1, len(grid), 6))
+    drops[0, :, :2], drops[..., VOLUME] = grid, 0.02**2
+    return drops
