@@ -40,6 +40,7 @@ test_behind_a_wall = same.test_a_wall_pushes_back_what_has_come_through_its_face
 def test_lists_are_made_anew_at_the_same_steps_after_a_resume():
     """How fast the fastest particle is decides how long lists last: a run that goes on from a file must know it."""
     scene, found = still(2.0, 1.0, 0.4, 10, schedule="per-grain", drops=falling()), []
+    state: dict[str, np.ndarray] = {}
     for cut in (False, True):
         run = Simulation(scene, threads=1, arch="cpu")
         if cut:
