@@ -10,7 +10,6 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
-from scipy.interpolate import CubicSpline
 
 from lab.preset.sections.water.liquid import spacing
 from lab.report.plots import BELOW, BLUE, GREEN, VERMILION, canvas
@@ -19,7 +18,7 @@ from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water import wavemaker
 from lab.studies.reproduce.water.measured import drawn, series
-from lab.studies.reproduce.water.wave_tank import WaveTank
+from lab.studies.reproduce.water.wave_tank import WaveTank, rise_at
 
 BETWEEN = 0.0625  # s, two profiles
 PROFILES = (1, 2, 4, 5, 7)  # those that are there
@@ -30,7 +29,6 @@ COLOURS = BLUE, VERMILION, GREEN
 FLUME = "ciemito_flume/piston_and_gauges.csv"
 NODES = 150  # of the surface of potential flow: twice as many change heights of waves by 0.3 % at most
 STARTED = 0.882  # s, in the record, when the piston begins to move
-_FOUND: dict[tuple, CubicSpline] = {}  # rises in potential flow, which take seconds, by what was asked
 
 
 def surface(one: Outcome, frame: int, at: np.ndarray) -> np.ndarray:
@@ -132,13 +130,14 @@ def linear(one: Outcome, gauge: int) -> tuple[np.ndarray, np.ndarray]:
 
 def nonlinear(one: Outcome, gauge: int) -> tuple[np.ndarray, np.ndarray]:
     """The same by nonlinear potential flow, up to the end of the run."""
-    duration, curve = float(one.recording.series["time"][-1]), _piston(one)
-    length = float(np.asarray(one.recording.preset.tank.outline)[:, 0].max())
+    duration = float(one.recording.series["time"][-1])
+    rise = rise_at(WaveTank(_depth(one), _length(one), NODES), _piston(one), duration, _places(one))
     instants = np.arange(0.0, duration, 0.01)
-    asked = duration, length, _depth(one), _places(one), curve(instants).tobytes()
-    if asked not in _FOUND:
-        _FOUND[asked] = CubicSpline(*WaveTank(asked[2], length, NODES).rises(curve, duration, np.array(asked[3])))
-    return instants, _FOUND[asked](instants)[:, gauge]
+    return instants, rise(instants)[:, gauge]
+
+
+def _length(one: Outcome) -> float:
+    return float(np.asarray(one.recording.preset.tank.outline)[:, 0].max())
 
 
 def _piston(one: Outcome) -> Callable:

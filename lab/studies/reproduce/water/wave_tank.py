@@ -1,4 +1,4 @@
-"""Waves of a piston by nonlinear potential flow: boundary elements round the water, stepped with its surface.
+"""Waves in a tank by nonlinear potential flow: boundary elements round the water, stepped with its surface.
 
 Longuet-Higgins & Cokelet (1976), Proc. R. Soc. A 350, 1, with nodes that stay where they are along the tank, so that
 the surface is a height η(x, t) with a potential φ(x, t) on it (Zakharov 1968):
@@ -6,7 +6,7 @@ the surface is a height η(x, t) with a potential φ(x, t) on it (Zakharov 1968)
 η_t = q √(1 + η_x²),   φ_t = −g η − ½ φ_x² + ½ (1 + η_x²) W²,   W = (q √(1 + η_x²) + φ_x η_x)/(1 + η_x²)
 
 with q the outward normal velocity, from Green's identity over piston, surface and end wall with ln r and its image in
-the floor. Potentials are linear along an element, whose integrals are exact; time is stepped by Runge and Kutta's
+the floor. In a tank that sways, x and φ are relative to it, and φ_t has −ẍ x besides. Potentials are linear along an element, whose integrals are exact; time is stepped by Runge and Kutta's
 fourth order. No wave may break.
 """
 
@@ -20,13 +20,17 @@ CORNER = 1e-9  # m, up to which two nodes are in one place
 PACE = 0.3  # of √(Δx/g), the step
 # After each step, what differs from node to node is taken (Shapiro 1970, order 8).
 SHAPIRO = np.array([-1.0, 8.0, -28.0, 56.0, 186.0, 56.0, -28.0, 8.0, -1.0]) / 256.0
+_FOUND: dict[tuple, CubicSpline] = {}
 
 
 class WaveTank:
-    """Water of a `depth` (m) between a piston, x from 0, and a wall at `length` (m), with so many `nodes` on top."""
+    """Water of a `depth` (m) between a wall or piston, x from 0, and a wall at `length` (m), with `nodes` on top.
 
-    def __init__(self, depth: float, length: float, nodes: int):
-        self.depth, self.length = depth, length
+    With `swayed` the tank moves, else the piston.
+    """
+
+    def __init__(self, depth: float, length: float, nodes: int, swayed: bool = False):
+        self.depth, self.length, self.swayed = depth, length, swayed
         ends = 2 + int(depth / length * nodes)  # elements of the walls are as long as those of the surface
         self.along, self.up = np.linspace(0.0, 1.0, nodes), np.linspace(0.0, 1.0, ends)
         self.left, self.top = np.arange(ends), ends + np.arange(nodes)
@@ -51,38 +55,56 @@ class WaveTank:
             double[wall], double[wall, wall], known[wall] = 0.0, 1.0, potential[top]
         return -np.linalg.solve(double, known)[self.top]
 
-    def rates(self, way: float, speed: float, state: np.ndarray) -> np.ndarray:
-        """How fast η (m/s) and φ (m²/s²) change at the nodes, which go with the piston in part, (2, nodes)."""
+    def rates(self, motion: np.ndarray, state: np.ndarray) -> np.ndarray:
+        """How fast η (m/s) and φ (m²/s²) change at the nodes, which go with the piston in part, (2, nodes).
+
+        `motion` (3,): place (m), velocity (m/s) and acceleration (m/s²) of piston or tank.
+        """
+        way, speed, pull = (0.0, 0.0, motion[2]) if self.swayed else (*motion[:2], 0.0)
         rise, potential = state
         steep, along = CubicSpline(self.along, state, axis=1)(self.along, 1) / (self.length - way)
         square = 1.0 + steep**2
         upwards = self.outflow(way, speed, rise, potential) * np.sqrt(square)
         vertical = (upwards + along * steep) / square
-        changes = [upwards, -GRAVITY * rise - 0.5 * along**2 + 0.5 * square * vertical**2]
+        changes = [upwards, 0.5 * (square * vertical**2 - along**2) - GRAVITY * rise - pull * self.places(way)]
         return np.array(changes) + speed * (1.0 - self.along) * np.array([steep, along])
 
     def rises(self, curve: Callable, duration: float, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Times (T,) s and the rise (T, n) m at distances (n,) m from where the piston began.
+        """Times (T,) s and the rise (T, n) m at distances (n,) m from where the piston began, or from the wall.
 
-        `curve(time, 0)` and `curve(time, 1)` are the piston's place (m) and velocity (m/s).
+        `curve(time, order)` are place (m), velocity (m/s) and acceleration (m/s²) of piston or tank at times (n,) s.
         """
         longest = PACE * np.sqrt(self.length * self.along[1] / GRAVITY)
         halves = np.linspace(0.0, duration, 2 * int(np.ceil(duration / longest)) + 1)
-        ways, speeds, step = curve(halves, 0), curve(halves, 1), halves[2]
+        motion, step = np.column_stack([curve(halves, order) for order in range(3)]), halves[2]
         state, found = np.zeros((2, len(self.along))), []
         for k in range(0, len(halves) - 1, 2):
-            found.append(CubicSpline(self.places(ways[k]), state[0])(distances))
-            state = self.stepped(state, ways[k : k + 3], speeds[k : k + 3], step)
+            found.append(CubicSpline(self.places(0.0 if self.swayed else motion[k, 0]), state[0])(distances))
+            state = self.stepped(state, motion[k : k + 3], step)
             state[:, 4:-4] = np.array([np.convolve(one, SHAPIRO, "valid") for one in state])
         return halves[:-1:2], np.array(found)
 
-    def stepped(self, state: np.ndarray, ways: np.ndarray, speeds: np.ndarray, step: float) -> np.ndarray:
-        """The state after a step; the piston's places and speeds are those at its start, middle and end."""
-        first = self.rates(ways[0], speeds[0], state)
-        second = self.rates(ways[1], speeds[1], state + 0.5 * step * first)
-        third = self.rates(ways[1], speeds[1], state + 0.5 * step * second)
-        fourth = self.rates(ways[2], speeds[2], state + step * third)
+    def stepped(self, state: np.ndarray, motion: np.ndarray, step: float) -> np.ndarray:
+        """The state after a step; `motion` (3, 3) is that at its start, middle and end."""
+        first = self.rates(motion[0], state)
+        second = self.rates(motion[1], state + 0.5 * step * first)
+        third = self.rates(motion[1], state + 0.5 * step * second)
+        fourth = self.rates(motion[2], state + step * third)
         return state + step / 6.0 * (first + 2.0 * (second + third) + fourth)
+
+
+def rise_at(
+    tank: WaveTank, curve: Callable, duration: float, distances: tuple[float, ...]
+) -> Callable[[np.ndarray], np.ndarray]:
+    """The rise (T, n) m at distances (n,) m as a function of time (T,) s; see `WaveTank.rises`.
+
+    It takes seconds to find, and is found once in a process.
+    """
+    asked = tank.depth, tank.length, len(tank.along), tank.swayed, duration, distances
+    asked += (curve(np.linspace(0.0, duration, 1000), 0).tobytes(),)
+    if asked not in _FOUND:
+        _FOUND[asked] = CubicSpline(*tank.rises(curve, duration, np.array(distances)))
+    return _FOUND[asked]
 
 
 def _influences(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -15,6 +15,7 @@ from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.measured import drawn
+from lab.studies.reproduce.water.wave_tank import WaveTank, rise_at
 
 NEAR = 0.3  # s about a measured turn, where ours is sought
 EARLY = 0.8  # s: the first trough comes before
@@ -25,6 +26,7 @@ SWAY, PITCH = (
     "sloshing_pitch_rectangular/akyildiz_unal2006_P2.csv",
 )
 COLOURS = BLUE, VERMILION, GREEN
+NODES = 81  # of the surface of potential flow
 
 
 def elevation(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
@@ -39,6 +41,25 @@ def turn(one: Outcome, when: float, sign: float) -> tuple[float, float]:
     near = np.abs(time - when) <= NEAR
     at = int(np.argmax(sign * rise[near]))
     return float(time[near][at] - when), float(rise[near][at])
+
+
+def nonlinear(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
+    """Times (s) and the rise (mm) at the gauge in nonlinear potential flow, of the tank as it sways in the run."""
+    preset, time = one.recording.preset, one.recording.series["time"]
+    tank = WaveTank(preset.water.depth, preset.tank.width, NODES, swayed=True)
+    sway, place = preset.motion.sway, list(preset.gauges.values())[GAUGE].y + 0.5 * preset.tank.width
+    spin = 2j * np.pi * sway.frequency
+
+    def curve(instants: np.ndarray, order: int) -> np.ndarray:
+        return np.imag(sway.amplitude * spin**order * np.exp(spin * instants + 1j * sway.phase))
+
+    return time, 1e3 * rise_at(tank, curve, float(time[-1]), (place,))(time)[:, 0]
+
+
+def crest_over_potential_flow(one: Outcome, when: float) -> float:
+    """The crest near a time (s) over that of nonlinear potential flow."""
+    (time, rise), ours = nonlinear(one), turn(one, when, 1.0)[1]
+    return ours / float(rise[np.abs(time - when) <= NEAR].max())
 
 
 def farthest(one: Outcome, times: Sequence[float]) -> float:
@@ -58,6 +79,7 @@ def beat(found: Found, crests: Sequence[Sequence[float]]) -> Figure:
     drawing, axes = canvas(SIZE)
     for (label, outcomes), colour in zip(found.items(), COLOURS, strict=False):
         axes.plot(*elevation(outcomes[0]), color=colour, lw=1.1, label=label)
+    axes.plot(*nonlinear(next(iter(found.values()))[0]), color="0.4", lw=0.8, ls="--", label="potential flow")
     when, size = np.transpose(crests)
     axes.errorbar(when, size, 0.1 * size, fmt="none", ecolor="0.4", capsize=2.5, label="measured crests ± 10 %")
     if (measured := drawn(axes, SWAY)) is not None:
@@ -91,6 +113,7 @@ def _of_swing(part: int) -> Callable[[Outcome, object], float]:
 
 NUMBERS = {
     "crest": ("mm", lambda one, when: turn(one, when, 1.0)[1]),
+    "sway_crest_over_potential_flow": ("1", crest_over_potential_flow),
     "farthest_turn": ("s", farthest),
     "first_trough": ("mm", first_trough),
     "pressure_swing": ("kPa", _of_swing(0)),
