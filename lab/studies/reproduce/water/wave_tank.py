@@ -6,8 +6,8 @@ the surface is a height η(x, t) with a potential φ(x, t) on it (Zakharov 1968)
 η_t = q √(1 + η_x²),   φ_t = −g η − ½ φ_x² + ½ (1 + η_x²) W²,   W = (q √(1 + η_x²) + φ_x η_x)/(1 + η_x²)
 
 with q the outward normal velocity, from Green's identity over piston, surface and end wall with ln r and its image in
-the floor. In a tank that sways, x and φ are relative to it, and φ_t has −ẍ x besides. Potentials are linear along an element, whose integrals are exact; time is stepped by Runge and Kutta's
-fourth order. No wave may break.
+the floor. In a tank that sways, x and φ are relative to it, and φ_t has −ẍ x besides. Potentials are linear along an
+element, whose integrals are exact; time is stepped by Runge and Kutta's fourth order. No wave may break.
 """
 
 from collections.abc import Callable
