@@ -168,7 +168,7 @@ def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
 
 
 def test_turns_of_a_wave_are_found_near_the_measured_ones(monkeypatch):
-    """A curve through the measured turns, 0.05 s late and 1.2 times as high; and one of potential flow, which agrees with it."""
+    """A curve through the measured turns, 0.05 s late and 1.2 times as high; and that of potential flow."""
     monkeypatch.setattr(waves, "NODES", 41)
     sizes = {1.93: -88.0, 2.57: 142.1, 3.27: -92.5, 4.04: 109.3, 7.0: -66.8, 7.71: 124.8, 8.3: -82.5, 9.16: 141.4}
     times = np.array([0.0, *sizes, 10.0])
