@@ -27,7 +27,7 @@ TIP = 60.0  # mm on either side of it are left out
 STILL, AHEAD = 38.0, 120.0  # mm: depth of the bed, which lies still so far before the front
 COLOURS = BLUE, VERMILION, GREEN
 FLUME = "ciemito_flume/piston_and_gauges.csv"
-NODES = 150  # of the surface of potential flow: twice as many change heights of waves by 0.3 % at most
+NODES = 150  # of the surface of potential flow: 250 change heights of waves by 0.2 %
 STARTED = 0.882  # s, in the record, when the piston begins to move
 
 
