@@ -97,6 +97,7 @@ FIGURES: Mapping[str, Callable] = {
     "sway beat": waves.beat,
     "pitch": waves.swings,
     "damper": damper.figure,
+    "liquid_damper": damper.liquid,
     "drag": drag.figure,
     "sinking": sinking.figure,
     "profiles": surfaces.profiles,

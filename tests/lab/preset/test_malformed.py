@@ -125,6 +125,8 @@ duration = "2 s"
 TABLES = {
     "record.csv": "time,roll,heave\n" + "".join(f"{0.1 * k:.1f},{k * (20 - k) % 7},0.00{k % 5}\n" for k in range(20)),
     "grains.csv": "y,z,radius,vy,vz,omega\n0,0.005,0.003,0,0,0\n0.01,0.02,0.003,0.1,0,5\n-0.01,0.03,0.002,0,-0.1,0\n",
+    "roll-damper.csv": "time,x\n" + "".join(f"{4 * k},{k * k * (30 - 2 * k)}\n" for k in range(11)),
+    "roll-damper-empty.csv": "time,x\n" + "".join(f"{4 * k},{k * k * (30 - 2 * k)}\n" for k in range(11)),
     "drop.csv": "time,heave\n" + "".join(f"{0.1 * k:.1f},{-k * k * (10 - k) ** 2}e-3\n" for k in range(11)),
     "standing-wave.csv": "time,sway\n" + "".join(f"{0.1 * k:.1f},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),
     "moving-square.csv": "time,sway\n" + "".join(f"{k},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),

@@ -79,7 +79,7 @@ def test_a_recording_gives_the_axle_back(tmp_path):
 def test_a_measured_series_is_read_where_it_is(tmp_path, monkeypatch):
     (tmp_path / "slide.csv").write_text(RECORD)
     changes = {"axle.slide.file": "$CARGOLAB_DATA/slide.csv", "axle.slide.time_column": "t", "run.duration": "3 s"}
-    changes |= {"axle.slide.column": "place", "axle.slide.amplitude": False, "axle.slide.period": False}
+    changes |= {"axle.slide.column": "place", "axle.slide.soft_start": "1 s"}
     monkeypatch.delenv("CARGOLAB_DATA", raising=False)
     assert "set CARGOLAB_DATA" in error_of(lambda: load("sloshing/roll-damper", changes))
     monkeypatch.setenv("CARGOLAB_DATA", str(tmp_path))

@@ -1,0 +1,47 @@
+"""A free tank beside its benchmark: the moments of its water, swing by swing."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from lab.measures.axle_roll import swing
+from lab.preset.find import load
+from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.water import damper
+
+PRESET = load("sloshing/roll-damper").resolved
+TIME = np.arange(0.0, 12.0, 0.02)
+
+
+def test_a_moment_against_the_rate_is_told_by_its_amplitude():
+    """What is in phase with the roll, and what is of another frequency, does no work."""
+    angle = np.pi * TIME
+    moment = -3.0 * np.cos(angle) + 2.0 * np.sin(angle) + 1.5 * np.cos(3.0 * angle)
+    middle, most, against = damper.opposed(TIME, moment, 5.0 * np.sin(angle)).T
+    assert len(middle) == 3 and np.diff(middle) == pytest.approx(2.0)
+    assert most == pytest.approx(5.0, rel=1e-3) and against == pytest.approx(3.0, rel=2e-3)
+
+
+def test_the_roll_of_an_empty_tank_asks_for_nothing():
+    slide = PRESET.axle.slide.motion
+    mass = np.interp(TIME, slide.time, slide.values)
+    roll = np.degrees(swing(PRESET.axle.solved, PRESET.run.gravity, TIME, mass))
+    _, most, against = damper.asked(PRESET, TIME, roll).T
+    assert most.max() > 10.0
+    assert np.abs(against) == pytest.approx(0.0, abs=1e-3)  # N m, of 4.9 that drive her
+
+
+def test_a_tank_with_the_moments_of_shallow_water_has_all_of_them():
+    """And one with half of them half."""
+    roll = 4.0 * np.sin(2.0 * np.pi / 1.944 * TIME) * np.minimum(1.0, TIME / 3.0) ** 2
+    tank = PRESET.tank.width, PRESET.water.depth, PRESET.axle.place[1], PRESET.run.gravity
+    when, moment = damper._moments_of(tank, TIME.tobytes(), roll.tobytes())
+    told = PRESET.water.density * PRESET.thickness * np.interp(TIME, when, moment)
+    series = {"time": TIME, "pose": np.radians(roll)[:, None, None] * [0.0, 0.0, 1.0], "axle_moment": told[:, None]}
+    one = Outcome({}, None, "complete", {}, {})
+    one.__dict__["recording"] = SimpleNamespace(series=series, preset=PRESET)
+    assert damper.moment_over_shallow(one, None) == pytest.approx(1.0, abs=0.01)
+    series["axle_moment"] = 0.5 * series["axle_moment"]
+    assert damper.moment_over_shallow(one, None) == pytest.approx(0.5, abs=0.01)
+    assert damper.shallow(PRESET, TIME, roll)[-1, 2] > 1.0  # N m: it opposes the roll
