@@ -212,6 +212,11 @@ def assert_sentence(said: str) -> None:
     assert said[-1] in ".?" and len(said) < 800 and said.isprintable(), said
 
 
+def is_small(preset: Preset) -> bool:
+    """Whether a mangled preset is built: a kilometre of water takes minutes to pack."""
+    return preset.run.repeats < 50 and grain_count(preset) < MOST_GRAINS and most_drops(preset) < MOST_DROPS
+
+
 def tried(path: Path, overrides: dict | None = None) -> bool:
     """Whether a preset loads and can be built; if not, it was refused in one sentence."""
     try:
@@ -219,7 +224,7 @@ def tried(path: Path, overrides: dict | None = None) -> bool:
             warnings.simplefilter("error")  # arithmetic that fails is said on the screen, too
             warnings.simplefilter("ignore", OldFormat)  # a sentence, where a mangled preset does not say its format
             preset = load(path, overrides).resolved
-            if preset.run.repeats < 50 and grain_count(preset) < MOST_GRAINS and most_drops(preset) < MOST_DROPS:
+            if is_small(preset):
                 build(preset)
     except LabError as error:
         assert_sentence(str(error))
@@ -415,7 +420,7 @@ def idle(monkeypatch, tmp_path):
 
     def run_preset(name, overrides, out, **_):
         preset = load(name, overrides)
-        if preset.resolved.run.repeats < 50 and grain_count(preset.resolved) < MOST_GRAINS:
+        if is_small(preset.resolved):
             prepare(preset, tmp_path)
         return done
 

@@ -11,7 +11,7 @@ from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water import damper
 
 PRESET = load("sloshing/roll-damper").resolved
-TIME = np.arange(0.0, 12.0, 0.02)
+TIME = np.arange(0.0, 9.0, 0.02)
 
 
 def test_a_moment_against_the_rate_is_told_by_its_amplitude():
@@ -19,7 +19,7 @@ def test_a_moment_against_the_rate_is_told_by_its_amplitude():
     angle = np.pi * TIME
     moment = -3.0 * np.cos(angle) + 2.0 * np.sin(angle) + 1.5 * np.cos(3.0 * angle)
     middle, most, against = damper.opposed(TIME, moment, 5.0 * np.sin(angle)).T
-    assert len(middle) == 3 and np.diff(middle) == pytest.approx(2.0)
+    assert len(middle) == 2 and np.diff(middle) == pytest.approx(2.0)
     assert most == pytest.approx(5.0, rel=1e-3) and against == pytest.approx(3.0, rel=2e-3)
 
 
@@ -28,7 +28,7 @@ def test_the_roll_of_an_empty_tank_asks_for_nothing():
     mass = np.interp(TIME, slide.time, slide.values)
     roll = np.degrees(swing(PRESET.axle.solved, PRESET.run.gravity, TIME, mass))
     _, most, against = damper.asked(PRESET, TIME, roll).T
-    assert most.max() > 10.0
+    assert most.max() > 5.0
     assert np.abs(against) == pytest.approx(0.0, abs=1e-3)  # N m, of 4.9 that drive her
 
 
