@@ -118,7 +118,12 @@ def asked(preset: Preset, time: np.ndarray, roll: np.ndarray) -> np.ndarray:
 
 
 def moment_over_shallow(one: Outcome, _: object) -> float:
-    """The water's moment against the roll over that of shallow water which rolls alike, mean of the swings."""
+    """The water's moment against the roll over that of shallow water which rolls alike, mean of the swings.
+
+    NaN without water.
+    """
+    if one.recording.preset.water is None:
+        return np.nan
     time, ours = roll(one)
     found = opposed(time, one.recording.series["axle_moment"][:, 0], ours)
     theory = shallow(one.recording.preset, time, ours)
