@@ -171,6 +171,10 @@ FAULTS = {
         {"gauges__P1": {"length": "5 mm"}},
         'gauges.P1.place: missing for a pressure gauge; give y and z on a wall, e.g. ["0 mm", "10 mm"].',
     ),
+    "force gauge without a place": (
+        {"gauges__gate": {"kind": "force"}},
+        'gauges.gate.place: missing for a force gauge; give y and z on a wall, e.g. ["0 mm", "10 mm"].',
+    ),
     "gauge round a corner": (
         {"gauges__P1": {"place": ["-450 mm", "2 mm"], "length": "10 mm"}},
         "gauges.P1.length: 10 mm reaches past the end of its wall.",

@@ -43,10 +43,10 @@ def check_water(preset: Whole) -> None:
         _check_depth(water, tank)
     else:
         _check_shape(water, tank)
+    _check_gauges(preset.gauges, tank)
     _check_spacing(preset)
     _check_sound(preset)
     _check_background(preset)
-    _check_gauges(preset.gauges, tank)
     check_flow(preset)
     check_periodic(preset)
 
