@@ -32,7 +32,7 @@ GROWN = 2.5  # s: before, the tank hardly swings
 CELLS = 200  # of shallow water: twice as many change its moments by 0.1 %
 SMOOTH = 9  # samples, 0.18 s, over which the steps of the record's encoder are smoothed by cubics
 DRY = "empty"
-COLOURS = BLUE, VERMILION, GREEN
+COLOURS = BLUE, VERMILION, GREEN, "#CC79A7", "#E69F00"  # Okabe & Ito (2008)
 
 
 def roll(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
