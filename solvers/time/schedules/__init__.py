@@ -25,7 +25,8 @@ def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: i
     if answering:
         if wanted == "per-grain" or arch != "cpu":
             kinds = "ships and tanks on axles run per-world or per-band, on the processor"
-            raise Unavailable(f'run.schedule: {kinds}; set run.arch = "cpu".')
+            key = 'run.schedule = "auto"' if arch == "cpu" else 'run.arch = "cpu"'
+            raise Unavailable(f"run.schedule: {kinds}; set {key}.")
         wanted = "per-world" if wanted == "auto" and not 2 * worlds <= threads else wanted
     if wanted != "auto":
         return wanted

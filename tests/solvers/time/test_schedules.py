@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from solvers.machine.errors import BadState
+from solvers.machine.errors import BadState, Unavailable
 from solvers.motion import Roll, Sway, Tilt
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
+from solvers.time.schedules import choose_schedule
 from solvers.time.settling import AT_REST
 from solvers.time.watch import RUNNING
 from tests.oracles.scenes import material
@@ -312,3 +313,12 @@ def test_the_watch_stops_a_bad_world(run, trouble):
     assert np.isfinite(found["position"][0]).all()
     assert np.isfinite(np.delete(found["position"][1], 7, axis=0)).all()
     assert np.linalg.norm(found["position"][0] - place[0], axis=1).max() < RADIUS
+
+
+@pytest.mark.parametrize(
+    ("wanted", "arch", "says"), [("per-grain", "cpu", "run.schedule"), ("auto", "cuda", "run.arch")]
+)
+def test_a_carrier_that_answers_needs_a_schedule_by_worlds_and_is_told_how_to_get_it(wanted, arch, says):
+    with pytest.raises(Unavailable, match=f"ships and tanks on axles .* set {says} = "):
+        choose_schedule(wanted, arch, 1, 100, 2, answering=True)
+    assert choose_schedule("auto", "cpu", 1, 100, 2, answering=True) in ("per-world", "per-band")
