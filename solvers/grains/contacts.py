@@ -8,7 +8,7 @@ from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
-from solvers.machine.wide import minus
+from solvers.machine.wide import entry, minus
 from solvers.space import tangent
 from solvers.space.axes import dot, named
 from solvers.tank.load import Load
@@ -90,12 +90,11 @@ class Contacts:
             for a in ti.static(range(g.axes)):
                 self.given[a][at] = force[a]
             self.given[g.axes][at], self.given[g.axes + 1][at] = turn_i, turn_j
-        for k in ti.static(range(pairs.lanes)):
+        for k in ti.static(halves_in_turn(pairs.lanes)):
             g.push(0, i[k], [force[a][k] for a in ti.static(range(g.axes))], turn_i[k])
-        if ti.static(not self.units.single):
-            target = pairs.target[u, block]
-            for k in ti.static(range(pairs.lanes)):
-                g.push(0, target[k], [-force[a][k] for a in ti.static(range(g.axes))], turn_j[k])
+            if ti.static(not self.units.single):
+                target = entry(pairs.target, u, block, k)
+                g.push(0, target, [-force[a][k] for a in ti.static(range(g.axes))], turn_j[k])
 
     @ti.func
     def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, force: ti.template(), turn):
@@ -246,6 +245,16 @@ class Contacts:
                     approach = ti.cast(g.radius[w, i] - gap[0], g.real)
                     energy += self.laws.bridge_energy(contacts, u, p, approach)
         return ti.Vector([touching, deepest, energy])
+
+
+def halves_in_turn(lanes: int) -> list[int]:
+    """The lanes of a block, one of either half in turn.
+
+    Pairs that follow each other in a list have grains in common, and a sum cannot go on before the last is stored: with
+    others between, a step takes a tenth less.
+    """
+    half = -(-lanes // 2)
+    return sorted(range(lanes), key=lambda lane: (lane % half, lane))
 
 
 @ti.func
