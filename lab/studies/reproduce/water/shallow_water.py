@@ -25,7 +25,7 @@ class ShallowTank:
     """Water of a `depth` (m) in a tank of a `width` (m), in `cells`, under an axle `above` its floor (m)."""
 
     def __init__(self, width: float, depth: float, above: float, gravity: float, cells: int = 300):
-        self.width, self.depth, self.above, self.gravity = width, depth, above, gravity
+        self.depth, self.above, self.gravity = depth, above, gravity
         self.edges = np.linspace(-0.5 * width, 0.5 * width, cells + 1)
         self.places, self.cell = 0.5 * (self.edges[1:] + self.edges[:-1]), width / cells
 
