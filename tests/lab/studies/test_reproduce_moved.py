@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import lab
-from lab.studies.reproduce.water import drag, measured, sinking, surfaces, wavemaker
+from lab.studies.reproduce.water import drag, measured, sinking, surfaces
+from lab.studies.reproduce.water.theory import wavemaker
 from tests.lab.studies.test_reproduce_water import judged, ran
 
 RECORD = "ciemito_flume/piston_motion.csv"

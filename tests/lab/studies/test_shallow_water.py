@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from lab.studies.reproduce.water.shallow_water import ShallowTank
+from lab.studies.reproduce.water.theory.shallow_water import ShallowTank
 
 WIDTH, DEPTH, ABOVE, GRAVITY = 0.9, 0.092, 0.47, 9.81
 UPRIGHT = np.zeros(3)

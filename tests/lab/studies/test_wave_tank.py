@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from lab.studies.reproduce.water import wavemaker
-from lab.studies.reproduce.water.wave_tank import WaveTank
+from lab.studies.reproduce.water.theory import wavemaker
+from lab.studies.reproduce.water.theory.wave_tank import WaveTank
 
 DEPTH = 0.31
 

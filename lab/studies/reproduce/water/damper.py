@@ -21,7 +21,7 @@ from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.measured import drawn, series
-from lab.studies.reproduce.water.shallow_water import ShallowTank
+from lab.studies.reproduce.water.theory.shallow_water import ShallowTank
 
 MEASURED = "spheric09_tuned_liquid_damper/motion_and_roll.csv"
 TIME, EMPTY, WATER = 0, 3, 4  # columns: s, deg, deg

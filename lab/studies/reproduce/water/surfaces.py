@@ -16,9 +16,9 @@ from lab.report.plots import BELOW, BLUE, GREEN, VERMILION, canvas
 from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.water import wavemaker
 from lab.studies.reproduce.water.measured import drawn, series
-from lab.studies.reproduce.water.wave_tank import WaveTank, rise_at
+from lab.studies.reproduce.water.theory import wavemaker
+from lab.studies.reproduce.water.theory.wave_tank import WaveTank, rise_at
 
 BETWEEN = 0.0625  # s, two profiles
 PROFILES = (1, 2, 4, 5, 7)  # those that are there

@@ -15,7 +15,7 @@ from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.measured import drawn
-from lab.studies.reproduce.water.wave_tank import WaveTank, rise_at
+from lab.studies.reproduce.water.theory.wave_tank import WaveTank, rise_at
 
 NEAR = 0.3  # s about a measured turn, where ours is sought
 EARLY = 0.8  # s: the first trough comes before
