@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.grains.contacts import GIVEN_APART, Contacts, gathered
+from solvers.grains.contacts import Contacts, gathered
 from solvers.grains.laws.chosen import PAIR, WALL
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, SURE
@@ -121,19 +121,12 @@ class ShapedContacts(Contacts):
         self, g: ti.template(), pairs: ti.template(), i, u, block, fy, fz, torque_i, torque_j, load: ti.template()
     ):
         """Apply the forces (N) on grains i of a block, their reactions, and the torques (N m) on i and j."""
-        listed, target = pairs.grain[u, block], pairs.target[u, block]
+        listed = pairs.grain[u, block]
         if ti.static(not self.units.whole):
             swapped = listed != i
             fy, fz = ti.select(swapped, -fy, fy), ti.select(swapped, -fz, fz)
             torque_i, torque_j = ti.select(swapped, torque_j, torque_i), ti.select(swapped, torque_i, torque_j)
-        if ti.static(not self.units.single):
-            at = GIVEN_APART * u
-            self.given[0][at], self.given[1][at], self.given[2][at], self.given[3][at] = fy, fz, torque_i, torque_j
-        for k in ti.static(range(pairs.lanes)):
-            g.push(0, listed[k], [fy[k], fz[k]], torque_i[k])
-        if ti.static(not self.units.single):
-            for k in ti.static(range(pairs.lanes)):
-                g.push(0, target[k], [-fy[k], -fz[k]], torque_j[k])
+        self.push_both(g, pairs, u, block, listed, [fy, fz], torque_i, torque_j)
         if ti.static(self.lined):
             load += self.on_lining(g, pairs, u, listed, pairs.mate[u, block], [fy, fz], torque_i)
 
