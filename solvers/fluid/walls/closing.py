@@ -9,6 +9,10 @@ from solvers.machine.state import State, padded
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot, named
 
+# m²: the least Σ V W, over the kernel's factor, that is divided by, far below that of a dummy with a pressure; 32 bits
+# bear its inverse times the factor of ∇W, in whatever order the compiler takes them (h from 0.1 mm on).
+UNSEEN = {ti.f64: 1e-30, ti.f32: 1e-20}
+
 
 @ti.data_oriented
 class Closing:
@@ -84,7 +88,7 @@ class Closing:
             for a in ti.static(range(p.axes)):
                 moved[a] += weight * nearing[a]
                 steep[a] += slope * apart[a]
-        few = 1.0 / ti.max(seen, 1e-30)
+        few = 1.0 / ti.max(seen, ti.static(UNSEEN[p.real]))
         # Unit vectors along the faces before the dummies, in the tank's axes.
         along = [p.load(self.along[a], b % p.stride - p.wet) for a in ti.static(range(p.axes))]
         if ti.static(self.bodies.moving):
