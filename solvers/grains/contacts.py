@@ -64,10 +64,9 @@ class Contacts:
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
             normal, distance, approach = self.geometry(g, i, j, reach, pairs.lanes)
-            overlap = greater(approach, 0.0)
             velocity = self.differences(g.now, i, j, pairs.lanes)
             spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
-            lever_i = share * (reach + overlap) - overlap
+            lever_i = share * (reach + approach) - approach  # a gap, too, is shared, whichever grain is listed first
             lever_j = distance - lever_i
             rate = minus(dot(velocity, normal))
             slip = tangent.slip(velocity, normal, lever_i * spin_i + lever_j * spin_j)

@@ -151,3 +151,23 @@ def test_column_carries_its_weight_and_rests(law):
     later = run.snapshot()["position"][0]
     assert np.abs(later[:, 1] - z).max() < 1e-6 * radius
     run.close()
+
+
+@pytest.mark.parametrize("law", ["haff-werner", "mindlin"])
+def test_it_does_not_matter_which_of_two_grains_is_listed_first(law):
+    """Two unequal grains meet off centre, wherever in a step they begin to touch: as the big and the small one number
+    themselves, and the other way round. A gap before the first touch belongs to both levers alike."""
+    radius, gaps = np.array([2e-3, 3e-3]), np.linspace(1e-4, 1.06e-4, 7)
+    side = 0.3 * radius.sum()
+    away = np.sqrt((radius.sum() + gaps) ** 2 - side**2)
+    place = np.array([[[0.0, 0.05], [far, 0.05 + side]] for far in away])
+    speed = np.array([[0.5, 0.0], [-0.5, 0.2]])
+    both = np.concatenate([place, place[:, ::-1]])
+    sizes = np.concatenate([np.tile(radius, (7, 1)), np.tile(radius[::-1], (7, 1))])
+    speeds = np.concatenate([np.tile(speed, (7, 1, 1)), np.tile(speed[::-1], (7, 1, 1))])
+    run = simulation(both, sizes, box(0.2, 0.2), velocity=speeds, tangential=law, gravity=0.0, stiffness_scale=1e-3)
+    run.advance(round(4e-4 / run.dt))
+    spin = run.snapshot()["spin"]
+    run.close()
+    assert np.abs(spin[:7]).min() > 1.0
+    np.testing.assert_allclose(spin[7:, ::-1], spin[:7], rtol=1e-9)

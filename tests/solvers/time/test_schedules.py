@@ -263,10 +263,11 @@ def test_growing_lists_change_nothing(told, schedule):
         found.place(start()[1])
         found.advance(EARLY)
         assert found.room == 1
-        found.grains.lists.skin.fill(skin)
+        margin = float(found.grains.lists.margin.to_numpy()[0])
+        found.grains.lists.margin.fill(margin + skin - SKIN)
         found.grains.lists.expire()
         found.advance(1)
-        found.grains.lists.skin.fill(SKIN)
+        found.grains.lists.margin.fill(margin)
         found.advance(100)
         ends.append(found.snapshot() | found.observe())
         assert np.all(found.clock.step.to_numpy() == EARLY + 101)
