@@ -410,7 +410,8 @@ def test_round_outlines_settle_in_the_bed_of_discs(store):
     discs.close()
     circles = {"shapes.grain.descriptors": [], "grains.settled_as": "discs"}
     outlined, _ = make(load("shapes/box", {**small, **circles}).resolved)
-    assert np.abs(outlined.snapshot()["position"] - bed).max() < 2e-3 * 6e-3  # it creeps on until it rests by itself
+    moved = np.abs(outlined.snapshot()["position"] - bed).max(axis=2) / 6e-3
+    assert np.median(moved) < 3e-4 and moved.max() < 2e-3  # discs creep by 5e-3 in half a second
     outlined.close()
     assert len(list(store.folder.iterdir())) == 4  # the discs' own were used, and not settled anew
 
