@@ -8,7 +8,7 @@ from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
-from solvers.machine.wide import entry, minus
+from solvers.machine.wide import minus
 from solvers.space import tangent
 from solvers.space.axes import dot, named
 from solvers.tank.load import Load
@@ -89,11 +89,12 @@ class Contacts:
             for a in ti.static(range(g.axes)):
                 self.given[a][at] = force[a]
             self.given[g.axes][at], self.given[g.axes + 1][at] = turn_i, turn_j
+        # Read as a whole, before the loop: read lane by lane, Taichi ends the process where vectors are not real.
+        target = pairs.target[u, block] if ti.static(not self.units.single) else i
         for k in ti.static(halves_in_turn(pairs.lanes)):
             g.push(0, i[k], [force[a][k] for a in ti.static(range(g.axes))], turn_i[k])
             if ti.static(not self.units.single):
-                target = entry(pairs.target, u, block, k)
-                g.push(0, target, [-force[a][k] for a in ti.static(range(g.axes))], turn_j[k])
+                g.push(0, target[k], [-force[a][k] for a in ti.static(range(g.axes))], turn_j[k])
 
     @ti.func
     def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, force: ti.template(), turn):

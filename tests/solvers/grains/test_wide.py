@@ -1,5 +1,10 @@
 """Kernels on real vectors compute what the others do, up to rounding."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -35,6 +40,14 @@ def thrown(pays, threads=1, **models):
     run = throw(pays, threads, **models)
     assert run.wide == pays
     return ended(run, STEPS)
+
+
+def test_without_real_vectors_kernels_compile_as_users_have_them():
+    """With Taichi's optimiser, which tests do without: on processors without AVX-512 it once ended the process."""
+    steps = 'from tests.solvers.grains.test_wide import throw; throw(False, tangential="mindlin").advance(10)'
+    outside = {name: value for name, value in os.environ.items() if name != "CARGOLAB_COMPILE"}
+    root = Path(__file__).parents[3]
+    subprocess.run([sys.executable, "-c", steps], env=outside, cwd=root, check=True, timeout=300)
 
 
 def ended(run, steps):

@@ -51,7 +51,7 @@ def shaken(bed, schedule="per-world", units=None) -> tuple[dict, np.ndarray]:
     run = Simulation(scene(np.tile(radius, (WORLDS, 1)), schedule), np.tile(place, (WORLDS, 1, 1)), 1, units=units)
     for _ in range(20):
         run.advance(round(1e-3 / run.dt))
-    state, numbers = run.snapshot() | run.observe(), run.number
+    state, numbers = run.snapshot() | run.observe(), run.matters["grains"].numbering.number
     run.close()
     return state, numbers
 

@@ -18,6 +18,7 @@ UP = np.array([-0.01, 0.02]) / np.hypot(0.01, 0.02)  # square to the roof's left
 STILL, MOVING = np.array([-0.1, 0.06]), np.array([0.05, 0.06])  # where the two roofs are at the start
 V = np.array([0.8, 1.6])  # m/s, of the one that moves
 DURATION = 0.03
+ASIDE = np.array([[-0.17, 0.02], [-0.17, 0.18]])  # where grains lie that meet nothing
 LEFT = 0.5 * (ROOF[0] + ROOF[1])
 # Where a grain would meet a roof, and from where: (a point of the roof's frame, away from it, aside of it in radii).
 AIMS = {
@@ -74,14 +75,17 @@ SLOW = [pytest.param(schedule, marks=pytest.mark.slow) for schedule in ("per-ban
 
 @pytest.fixture(scope="module", params=["per-world", *SLOW])
 def flight(request) -> Flight:
-    """Worlds of two grains without weight, each aim once elastic and once with friction and loss."""
+    """Worlds of two grains without weight, each aim once elastic and once with friction and loss.
+
+    After each of them a grain lies aside: a band is of two grains at least.
+    """
     shots = [shot(*aim) for aim in AIMS.values()] * len(KINDS)
     start, velocity = (np.array(values) for values in zip(*shots, strict=True))
     materials = [material(young=4e7, dissipative_time=a, friction=mu) for a, mu in KINDS.values() for _ in AIMS]
     roofs = [tuple(map(tuple, ROOF + place)) for place in (STILL, MOVING)]
     way = 0.05
     scene = Scene(
-        np.full((len(start), 2), RADIUS),
+        np.full((len(start), 4), RADIUS),
         box(0.4, 0.2),
         materials,
         materials,
@@ -91,16 +95,21 @@ def flight(request) -> Flight:
         parts=(Part(roofs[0]), Part(roofs[1], tuple(way * V / STAND), 0.0, STAND, 1e300)),
         schedule=request.param,
     )
-    place = np.stack([start + STILL, start + MOVING], axis=1)
+    flies = slice(None, None, 2)
+    place, speed, spin = (np.zeros((len(start), 4, *size)) for size in ((2,), (2,), ()))
+    place[:, flies] = np.stack([start + STILL, start + MOVING], axis=1)
+    place[:, 1::2] = ASIDE
+    speed[:, flies], spin[:, flies] = np.stack([velocity, velocity + V], axis=1), 150.0
     run = Simulation(scene, place, 1, arch="cpu", units=2 if request.param == "per-band" else None)
-    run.launch(np.stack([velocity, velocity + V], axis=1), np.full(place.shape[:2], 150.0))
+    run.launch(speed, spin)
     looks = []
     while run.time < DURATION:
         run.advance(12)
         state, rows = run.snapshot(), run.observe()
         roofs = run.part_places()[0] + [STILL, MOVING]
+        state = {name: state[name][:, flies] for name in ("position", "velocity", "spin")}
         near = np.stack([distance(state["position"][:, k], roof) for k, roof in enumerate(roofs)], axis=1)
-        looks.append([*(state[n] for n in ("position", "velocity", "spin")), near, rows["contacts"], run.time])
+        looks.append([*state.values(), near, rows["contacts"], run.time])
     run.close()
     shape = len(looks), len(KINDS), len(AIMS)
     columns = [np.array(column) for column in zip(*looks, strict=True)]
