@@ -80,6 +80,6 @@ def figure(found: Found) -> Figure:
     longest = max((outcomes[0] for outcomes in found.values()), key=lambda one: one.recording.preset.run.duration)
     until = min(longest.recording.preset.run.duration, COMPARED)
     axes.plot(*finite_differences(longest, until), color="black", lw=1.0, ls="--", label="finite differences")
-    axes.set(xlabel="time (s)", ylabel="drag coefficient", ylim=(0.0, 10.0))
+    axes.set(xlabel="time (s)", ylabel="drag coefficient", ylim=(0.0, 11.0))
     drawing.legend(loc=BELOW, ncols=4)
     return drawing
