@@ -64,6 +64,10 @@ class PlainBoth(PlainWater):
         self.lean = INTERFACES[air.interface].leans(water.density, air.density)[0]
         self.weighs = np.ones(len(self.gas)) if air.reduced is None else of(1.0 - air.density / water.density, 0.0)
 
+    def most(self, s: np.ndarray) -> np.ndarray:
+        """No bound: beside air fullness is of both phases, and certain."""
+        return np.full_like(s, np.inf)
+
     def volume(self, mass, s):
         """V = m/ρ."""
         return mass / (self.density * (1.0 + s))

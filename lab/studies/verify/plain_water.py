@@ -112,8 +112,12 @@ class PlainWater:
     def keeping(self, fullness: np.ndarray, lacking: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Rate of s by which the density follows the room that is taken, in packed water away from the surface."""
         deep = np.where(fullness > 0.93, np.maximum(1.0 - lacking / 0.1, 0.0), 0.0)
-        off = np.clip(self.over(fullness), -10.0 * np.abs(s), 10.0 * np.abs(s))
+        off = np.clip(self.over(fullness), -self.most(s), self.most(s))
         return 0.01 * self.water.delta * self.water.sound_speed / self.water.length * deep * (1.0 + s) * off
+
+    def most(self, s: np.ndarray) -> np.ndarray:
+        """The most that counts of what a fullness is off."""
+        return 10.0 * np.abs(s)
 
     def over(self, fullness: np.ndarray) -> np.ndarray:
         """By what share a fullness is over that of a square lattice."""

@@ -22,8 +22,9 @@ class Extrapolation:
     that is extrapolated from water alone, and air its own, see `solvers.fluid.phases.interfaces`; gauges see both.
 
     Limits: the mean is of first order; what its push does to the energy is given back by `Closing`. A wall that does
-    not pull may throw a particle off that lies on its face or behind it: of eight films of three rows, with c0² of
-    20 000 g H and particles 0.35 Δx off their places at the start, three gained energy so, of four of five rows one.
+    not pull may throw a particle off that lies on its face or behind it: of four films of three rows, with c0² of
+    20 000 g H and particles up to 0.35 Δx off their places at the start, three gained energy so, of four of five rows
+    one; up to 0.2 Δx off none of four.
     """
 
     def __init__(self, arrays: State, medium: Medium, lean: Lean):
