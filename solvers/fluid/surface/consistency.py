@@ -29,11 +29,10 @@ class Consistency:
     rest nothing in the first two rows, three quarters in the third. Diffusion carries the term to the surface. In
     broken water a_i is 0. The energy counts as diffused.
 
-    What single particles are off is ρ c0²/100 times as large in pressure. That is nothing where c0² = 100 g H, and most
-    of the pressure where water is shallow for its sound: in a film that came of a drop, of three rows and
-    c0² = 20 000 g H, particles on the floor were sucked there by ten times the pressure of the water over them, until
-    the film burst, by itself and time after time. So |F_i/F_0 − 1| counts up to FELT |ρ_i/ρ_0 − 1|, by which the
-    pressure is off by a tenth at most. Not beside air, where F is certain.
+    What F is off in single particles comes to a pressure ρ c0²/100 times as large. That is little where c0² = 100 g H,
+    and can be ten times the pressure of the water where it is shallow for its sound: a film that came of a drop, of
+    three rows and c0² = 20 000 g H, burst by itself, time after time, and did not without the term. So |F_i/F_0 − 1|
+    counts up to FELT |ρ_i/ρ_0 − 1|: the pressure is off by at most a tenth. Beside air F is certain, and all counts.
 
     Air fills what water leaves, so that F of all that is about it, water and walls, is 1 wherever air is (own
     derivation): there F is of both phases, a_i = 1, and τ has the air's speed of sound. F/F_0 − 1 counts down to VOID.

@@ -1,1 +1,1 @@
-"""Water by other theories than particles, to hold these against: potential flow, linear and not, and shallow water."""
+"""Water by other methods than particles, to hold these against: potential flow, shallow water, finite differences."""

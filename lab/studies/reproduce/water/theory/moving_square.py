@@ -19,7 +19,8 @@ from scipy.optimize import brentq
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import LinearOperator, cg, splu
 
-DIFFUSION, ADVECTION = 0.075, 0.125  # of h²/ν and of h over the fastest speed of the square, the longest step
+DIFFUSION, ADVECTION = 0.075, 0.125  # of h²/ν and of h over the speed of the square, the longest step
+LONGEST = 5e-3  # s, in which the square's acceleration hardly changes
 REFACTORED = 40  # steps at most with the same factors
 SLOW = 6  # iterations, after which factors are found anew
 SETTLED = 1e-8  # of the divergence, which is left
@@ -32,7 +33,7 @@ class MovingSquare:
     """A square of a `side` (m) in the middle of the height of a `box` (2,) m, its middle at first at x = `start` (m).
 
     Liquid of kinematic `viscosity` (m²/s) and density 1. Half a side has `cells`; the one at the corner is shorter by
-    the factor `finer`.
+    the factor `finer`. Raises ArithmeticError where a pressure is not found.
     """
 
     def __init__(
@@ -86,7 +87,8 @@ class MovingSquare:
     def longest_step(self) -> float:
         """The step (s) that the narrowest cell allows."""
         narrow = min(np.diff(self.lines(self.time)[0]).min(), self.d_y.min())
-        return min(DIFFUSION * narrow**2 / self.viscosity, ADVECTION * self.d_y.min(), 0.005)
+        by_speed = ADVECTION * self.d_y.min() / max(abs(float(self.curve(self.time, 1))), 1e-9)
+        return min(DIFFUSION * narrow**2 / self.viscosity, by_speed, LONGEST)
 
     def advance(self, step: float) -> None:
         """Advance a step (s): what drives the water, then the pressure that keeps its volume."""
@@ -173,7 +175,9 @@ class MovingSquare:
             self.factors, self.steps = splu(matrix, "MMD_AT_PLUS_A", options={"SymmetricMode": True}), 0
         rounds = []
         near = LinearOperator(matrix.shape, self.factors.solve)
-        found, _ = cg(matrix, sources - sources.mean(), rtol=SETTLED, M=near, callback=rounds.append)
+        found, missed = cg(matrix, sources - sources.mean(), rtol=SETTLED, M=near, callback=rounds.append)
+        if missed:
+            raise ArithmeticError(f"The pressure round the square is not found at t = {self.time:.4g} s.")
         self.steps = REFACTORED if len(rounds) > SLOW else self.steps + 1
         return found - found.mean()
 
