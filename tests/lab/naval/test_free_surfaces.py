@@ -55,20 +55,20 @@ def test_tank_of_a_model_goes_with_the_fourth_power_of_the_scale():
 
 
 def test_bare_ship_has_the_weight_of_her_water():
-    """275 kg at 0.140 m and 49 kg of water at 0.300 + 0.095 m: KG of both; the source's GM of 0.648 m is solid."""
+    """199 kg at 0.140 m and 76 kg of water at 0.220 + 0.095 m: KG of both, and GM of a box with that, solid."""
     found = of("ship/barge-two-tanks")
-    water = 1000.0 * 0.8 * 0.19 * 0.322
-    whole = 1000.0 * 3.0 * 0.108
-    assert found.gravity_height == pytest.approx(((whole - water) * 0.14 + water * 0.395) / whole, rel=1e-3)
-    assert found.solid == pytest.approx(2060.0 / (324.0 * 9.81), rel=2e-3)
-    assert found.free_surface == pytest.approx(0.8**3 / 12.0 * 0.322, rel=1e-6)
+    water = 1000.0 * 0.8 * 0.19 * 0.5
+    whole = 1000.0 * 2.546 * 0.108
+    assert found.gravity_height == pytest.approx(((whole - water) * 0.14 + water * 0.315) / whole, rel=1e-3)
+    assert found.solid == pytest.approx(0.054 + 1.0 / 12.0 / 0.108 - found.gravity_height, rel=2e-3)
+    assert found.free_surface == pytest.approx(0.8**3 / 12.0 * 0.5, rel=1e-6)
 
 
 def test_water_in_a_side_tank_is_judged_on_its_side():
     """A tank to port of a ship without her water: G lies to port, and she is judged there."""
     keys = {"tank.width": "300 mm", "ship.hold": ["-300 mm", "300 mm"], "gauges.side.y": "0 mm"}
     found = of("ship/barge-two-tanks", **keys)
-    share = 0.3 * 0.19 * 0.322 / (3.0 * 0.108)
+    share = 0.3 * 0.19 * 0.5 / (2.546 * 0.108)
     assert found.side == "port" and found.aside == pytest.approx(0.3 * share, rel=1e-3)
     assert float(found.levers.at(0.0)) == pytest.approx(-found.aside, rel=1e-6)
     assert dict(sheet.facts(found))["G aside"].endswith("to port, the side that she is judged on")
