@@ -51,8 +51,8 @@ class Claim(BaseModel):
     difference or ratio of two, of the same beds where paired, lies `between` two numbers; one is the `same` as another
     within a tolerance or a `share`; most beds have or ship's `capsizes`; the first `scatters` most. `tolerance` says
     how words of the source are read, `shows` how ours are written, `given` is a number that a function of
-    `registry.DERIVED` needs, or a list within a list of them. `judged`: with false the verdict is told as a word that
-    does not count.
+    `registry.DERIVED` needs, or a list within a list of them. `judged`: with false a verdict on a trend is told as a
+    word that does not count, and a value has a difference and no verdict.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -167,7 +167,7 @@ def _told(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:
 
 def _value(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:
     row = stated(claim.says, claim.value, numbers[0].value, allowed, exact=numbers[0].exact)
-    return replace(row, source=claim.source or row.source)
+    return replace(row, source=claim.source or row.source, verdict=row.verdict if claim.judged else None)
 
 
 def _range(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:

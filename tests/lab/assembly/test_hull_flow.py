@@ -254,7 +254,8 @@ def test_strips_of_a_prism_change_nothing():
 def test_a_hull_from_offsets_floats_in_waves(tmp_path):
     """The barge once more, by a file of her offsets: the same vessel."""
     file = tmp_path / "barge.csv"
-    file.write_text("\n".join(["station,z,half_breadth", *(f"{x},{z},0.5" for x in (0, 1.5, 3) for z in (0, 0.9))]))
+    places = [(x, z) for x in (0, 1.273, 2.546) for z in (0, 0.9)]
+    file.write_text("\n".join(["station,z,half_breadth", *(f"{x},{z},0.5" for x, z in places)]))
     changes = {"ship.hydrodynamics": "strips", "ship.offsets": str(file)}
     offsets, prism_of = (vessels(load("ship/barge-two-tanks", c).resolved)[0].ship for c in (changes, {}))
     assert offsets.radiation.added_mass == pytest.approx(prism_of.radiation.added_mass, rel=1e-6, abs=1e-6)

@@ -334,6 +334,8 @@ def test_a_claim_in_a_file_is_run_and_judged_by_its_number_and_tolerance():
     assert [rows[name].verdict for name in ("A slides", "B slides", "later")] == ["agrees", "differs", "agrees"]
     assert rows["B slides"].source == "30 deg" and rows["B slides"].tolerance == "2 deg: by eye"
     assert [row.quantity for row in trial.tell({"A": found["A"]}).rows] == ["A slides"]  # a report may lack B
+    unjudged = read(CLAIMS.replace('within = "bed"', 'within = "bed"\njudged = false'))["trial"].tell(found).rows[1]
+    assert unjudged.verdict is None and unjudged.apart == rows["B slides"].apart != ""
 
 
 @pytest.mark.parametrize(
