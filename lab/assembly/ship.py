@@ -12,6 +12,7 @@ from lab.base.errors import LabError
 from lab.preset.sections import sea as seas
 from lab.preset.sections import ship as ships
 from solvers.machine.errors import Unavailable
+from solvers.motion.staggered import longest_step
 from solvers.ship.body import NOTHING, Body, bolted
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.linear import impedance, inertia_for_roll, require_damped
@@ -97,7 +98,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         require_damped(ship, start(ship, given.heave))
     limits = (-given.capsize, given.capsize) if given.capsize else (-inf, inf)
     openings = given.flooding_points
-    return Vessel(
+    vessel = Vessel(
         ship,
         given.hold,
         length=given.length or 1.0,
@@ -108,6 +109,25 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         handover=given.coupling_step if given.coupling == "as_K" else None,
         openings=openings,
     )
+    if given.coupling == "as_K":
+        _require_stable(given.coupling_step, vessel)
+    return vessel
+
+
+def _require_stable(step: float, vessel: Vessel) -> None:
+    """Raise LabError if steps (s) that end with an extrapolated load are too long for how she swings.
+
+    The memory of radiation is left out: it is stepped by the trapezoidal rule, which is stable with any step.
+    """
+    ship = vessel.ship
+    plain = replace(ship, radiation=replace(ship.radiation, memory=None))
+    period = replace(vessel, ship=plain).shortest_period
+    longest = longest_step(period)
+    if step > longest:
+        raise LabError(
+            f"ship.coupling_step: {1e3 * step:.4g} ms is not stable with her shortest period of {period:.3g} s; "
+            f'take at most {1e3 * longest:.2g} ms, or ship.coupling = "instant".'
+        )
 
 
 def _body(given: ships.Ship, section: Immersible, mass: float, wet: Body) -> Body:

@@ -6,11 +6,16 @@ weighted after Bossak, (1 − b) M a' + b M a = F*, and the contents follow her 
 `motion.afloat` she takes the load of the instant instead, with what of it answers her acceleration on her own side.
 """
 
-from math import comb
+from math import comb, pi
 
 import numpy as np
 
 BOSSAK = -0.1  # b: the source does not say; usual values are −0.3 to 0 (Wood, Bossak & Zienkiewicz 1980)
+GAMMA = 0.5 - BOSSAK  # of Newmark's velocity: no other is of second order
+BETA = 1.0 / 12.0  # of Newmark's pose: no other keeps periods to fourth order, see `elongation`
+EVEN = 0.25 * (1.0 - BOSSAK) ** 2  # β' of an even average of accelerations
+SMOOTHING = 0.25  # share of the latest acceleration in the smoothed one, see `motion.as_k`
+LARGEST = 2.35  # ω H (rad) up to which an oscillation is stable with these
 POINTS = 5
 
 
@@ -30,10 +35,15 @@ def growth(ratio: float, points: int = POINTS) -> float:
     return float(np.abs(np.roots(np.append(1.0, ratio * lagrange(points)))).max())
 
 
-def elongation(angle: float, bossak: float = BOSSAK) -> float:
+def elongation(angle: float, beta: float = BETA) -> float:
     """Share by which steps after Newmark and Bossak lengthen a period 2π/ω, for `angle` = ω H (rad), to second order.
 
-    (ω H)² (β − 1/12)/2 with β = (1 − b)²/4; 1/12 (ω H)² of the trapezoidal rule, b = 0 (Hughes 1987, section 9.1). Own
-    expansion with b; an exact load has it, too. After a time t motion is off by this share of ω t, of its amplitude.
+    (ω H)² (β − 1/12)/2 whatever b: none of second order with β = 1/12 (Fox & Goodwin 1949), 1/12 (ω H)² with ¼ (Hughes
+    1987, section 9.1). Own expansion with b. After a time t motion is off by this share of ω t, of its amplitude.
     """
-    return 0.5 * angle**2 * (0.25 * (1.0 - bossak) ** 2 - 1.0 / 12.0)
+    return 0.5 * angle**2 * (beta - 1.0 / 12.0)
+
+
+def longest_step(period: float) -> float:
+    """The longest step (s) that is stable for a ship with this shortest period (s)."""
+    return LARGEST * period / (2.0 * pi)

@@ -8,6 +8,7 @@ import pytest
 from lab.assembly.hull_tables import whole_form
 from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
+from lab.base.errors import LabError
 from lab.preset.find import load
 from solvers.ship.hydrostatics import righting_levers
 from solvers.ship.linear import impedance, oscillations
@@ -105,3 +106,12 @@ def test_a_hull_of_one_section_floats_as_that_section(tmp_path):
     assert levers[0] == pytest.approx(levers[1], abs=1e-9)
     pose = np.array([0.4, section.about[1] + given.heave, 0.3])
     assert hull.load.force(pose, 31.0) == pytest.approx(section.load.force(pose, 31.0), rel=1e-3)
+
+
+def test_steps_too_long_for_a_stiff_mooring_are_refused():
+    """A barge of 108 kg/m and some added mass on a spring of 1 MPa: the message names the key and the longest step."""
+    given = {"ship.rig.sway_spring": "1 MPa", "ship.coupling": "as_K"}
+    with pytest.raises(LabError, match=r"ship.coupling_step: 100 ms is not stable .* 0.0\d+ s; take at most \d\d ms"):
+        vessels(load("ship/barge-two-tanks", given | {"ship.coupling_step": "100 ms"}).resolved)
+    ship = vessels(load("ship/barge-two-tanks", given | {"ship.coupling_step": "10 ms"}).resolved)[0]
+    assert ship.handover == 0.01
