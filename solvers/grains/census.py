@@ -7,7 +7,7 @@ import taichi as ti
 
 from solvers.grains import quantities
 from solvers.grains.contacts import Contacts
-from solvers.grains.neighbours import Neighbours
+from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.state import Grains
 from solvers.machine.quantity import parted, places
 from solvers.machine.state import Axis, State

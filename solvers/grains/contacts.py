@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.laws.extremes import greater
-from solvers.grains.neighbours import Neighbours
+from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units

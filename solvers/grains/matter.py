@@ -10,9 +10,9 @@ from solvers.grains.checks import FASTEST_STEP, check_state, refuse_speed
 from solvers.grains.contacts import Contacts
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws.chosen import ChosenLaws
+from solvers.grains.lists.neighbours import Neighbours
+from solvers.grains.lists.numbering import Numbering
 from solvers.grains.mover import Mover
-from solvers.grains.neighbours import Neighbours
-from solvers.grains.numbering import Numbering
 from solvers.grains.pressing import Presser, Pressing
 from solvers.grains.shapes.grains import ShapedGrains
 from solvers.grains.shapes.rules.area import Area
@@ -153,8 +153,8 @@ class GrainMatter(Matter):
 
     @ti.func
     def sort(self, w):
-        """Sort the grains of a world into cells."""
-        self.lists.cells.sort_world(w)
+        """Sort the grains of a world into cells, where that is needed."""
+        self.lists.sort(w)
 
     @ti.func
     def make_lists(self, u, t, dt, whole):

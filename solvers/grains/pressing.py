@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.contacts import Contacts, is_some
-from solvers.grains.neighbours import Neighbours
+from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.state import Grains
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls

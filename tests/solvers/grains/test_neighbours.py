@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from solvers.grains.lists.neighbours import NEVER
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -127,6 +128,36 @@ def shaken(skin: float, room: int = 1) -> Simulation:
         run.grains.grains.put(np.stack([stack, gas]))
     run.launch(velocity)
     return run
+
+
+def test_lists_equal_brute_force_while_grains_fly():
+    """New lists after each of many flights of a third of the skin; cells are searched for a few of them.
+
+    Each world by itself: in the second nobody moves and its first candidates stay.
+    """
+    skin, rng = 1.2e-3, np.random.default_rng(9)
+    radius, position = (values[:2] for values in clouds(rng, 150, 2.0 * RADIUS + skin))
+    scene = Scene(radius, TANK, material(), material(), step=1e-15, schedule="per-world")
+    run = Simulation(scene, position, threads=1, skin=skin)
+    flight, sought = rng.normal(size=position[0].shape), []
+    flight *= 0.33 * skin / np.linalg.norm(flight, axis=1).max()
+    for _ in range(24):
+        position[0] += flight
+        for a, field in enumerate(run.grains.grains.place):
+            whole = field.to_numpy()
+            whole[:, : position.shape[1]] = position[:, :, a]
+            field.from_numpy(whole)
+        run.grains.lists.travel.fill(NEVER)
+        run.advance(1)
+        sought.append(run.grains.lists.candidates.renewed.to_numpy())
+        for w in range(2):
+            pairs, walls = listed(run.grains.lists.pairs, w), listed(run.grains.lists.contacts, w)
+            assert set(map(tuple, pairs.tolist())) == brute_pairs(position[w], radius[w], skin)
+            assert set(map(tuple, walls.tolist())) == brute_walls(position[w], radius[w], skin)
+    run.close()
+    # More than three skins lie between two searches: ten flights of nearly a third each
+    assert np.flatnonzero(np.array(sought)[:, 0]).tolist() == [0, 10, 20]
+    assert np.flatnonzero(np.array(sought)[:, 1]).tolist() == [0]
 
 
 def brute_census(position: np.ndarray, radius: np.ndarray) -> int:

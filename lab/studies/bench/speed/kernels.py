@@ -64,10 +64,10 @@ class Parts:
 
     @ti.kernel
     def build(self, times: ti.i32, step: ti.f64):
-        """Sorting the grains into cells and listing all contacts, with the laws' constants for `step`."""
+        """Listing all contacts of the candidates, with the laws' constants for `step`."""
         ti.loop_config(serialize=True)
         for _ in range(times):
-            self.neighbours.cells.sort_world(0)
+            self.neighbours.sort(0)
             self.neighbours.rebuild(0, 0.0, ti.cast(step, self.real), True)
 
     @ti.kernel

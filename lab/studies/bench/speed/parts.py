@@ -100,7 +100,7 @@ def _pieces(page: Page, rest: AtRest) -> None:
 
 def _lists(page: Page, flow: InFlow) -> None:
     page.say(f"""At rest lists are never built anew. In a bed swayed by {1e3 * SWAY.amplitude:g} mm at
-        {SWAY.frequency:g} Hz they are every {flow.between:.0f} steps; building them takes as long as
+        {SWAY.frequency:g} Hz they are every {flow.between:.0f} steps; building them of the candidates takes as long as
         {flow.build / flow.step:.1f} steps, {flow.build / (flow.between * flow.step):.1%} of the time.""")
 
 

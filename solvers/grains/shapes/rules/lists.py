@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater
-from solvers.grains.neighbours import NEVER, Neighbours
+from solvers.grains.lists.neighbours import NEVER, Neighbours
 from solvers.grains.shapes.rules.rest import STILL
 from solvers.grains.shapes.support import Support
 from solvers.machine.state import Axis

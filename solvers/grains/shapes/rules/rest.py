@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.grains.contacts import gathered
 from solvers.grains.laws.extremes import greater, lesser
-from solvers.grains.neighbours import LANES, NEVER
+from solvers.grains.lists.neighbours import LANES, NEVER
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 

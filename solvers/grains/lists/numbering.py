@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from solvers.grains.contact_list import ContactList
-from solvers.grains.neighbours import Neighbours
+from solvers.grains.lists.contact_list import ContactList
+from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.state import Grains
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.units import Units

@@ -1,4 +1,4 @@
-"""Neighbour lists: Verlet lists with a skin, built from a cell grid, that carry the contact history.
+"""Neighbour lists: Verlet lists with a skin, built from candidates, that carry the contact history.
 
 A unit lists its pairs in the order of their first grains, so its forces are summed in one order on any number of
 threads. A pair within a unit is listed once, i < j (half-list); a pair across two units is listed in both.
@@ -7,8 +7,9 @@ threads. A pair within a unit is listed once, i < j (half-list); a pair across t
 import numpy as np
 import taichi as ti
 
-from solvers.grains.contact_list import ContactList
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
+from solvers.grains.lists.candidates import Candidates
+from solvers.grains.lists.contact_list import ContactList
 from solvers.grains.state import Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
@@ -22,6 +23,7 @@ LANES, WIDE = 8, 16
 # Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more). A unit of a single
 # grain lists all of its neighbours (full list).
 ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
+SLACK = 6.0  # of candidates, in skins
 NEVER = 1e30  # m, a displacement that makes the lists stale
 
 
@@ -71,6 +73,10 @@ class Neighbours:
         self.skin = own.holding("skin", np.array([skin]), "one")
         # The gap (m) up to which pairs are listed.
         self.margin = own.holding("margin", np.array([max(skin, bridges) + early]), "one")
+        self.walled = not units.single and not walls.moving  # whether candidates know the walls
+        if not units.single:
+            self.candidates = Candidates(arrays, units, grains, walls, SLACK * skin, room, across)
+            reach += SLACK * skin
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
         self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
         # `travel` (m) bounds the displacement of all grains since the lists were built, at the time `built_at` (s).
@@ -86,6 +92,17 @@ class Neighbours:
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
         self.travel.fill(NEVER)
+        if not self.units.single:
+            self.candidates.forget()
+
+    @ti.func
+    def sort(self, w):
+        """Sort a world's grains into cells, where candidates must be sought anew before its lists are rebuilt."""
+        anew = True
+        if ti.static(not self.units.single):
+            anew = self.candidates.renew(w)
+        if anew:
+            self.cells.sort_world(w)
 
     @ti.func
     def worn(self, u):
@@ -138,22 +155,29 @@ class Neighbours:
         start, end = self.units.first(u), self.units.end(u)
         for i in range(start, end):
             self.pairs.first[u, i - start] = found
-            place, reach = [g.place[a][w, i] for a in ti.static(range(g.axes))], g.reach[w, i] + self.margin[0]
-            lower, upper = c.box(w, i)
-            for n in range(c.rows(lower, upper)):
-                # Three adjacent cells of a row are one contiguous range of the sorted grains.
-                row = c.row(lower, upper, n)
-                for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
-                    j = c.sorted[w, k]
-                    own = start <= j < end
-                    if j > i or (j < i and not own):
-                        apart = [place[a] - g.place[a][w, j] for a in ti.static(range(g.axes))]
-                        far = reach + g.reach[w, j]
-                        if dot(apart, apart) < far * far:
-                            found = self.list_pair(g, u, found, i, j, j if own else ghost, dt)
+            if ti.static(self.units.single):
+                lower, upper = c.box(w, i)
+                for n in range(c.rows(lower, upper)):
+                    row = c.row(lower, upper, n)
+                    for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
+                        j = c.sorted[w, k]
+                        if j != i and self.near(g, w, i, j):
+                            found = self.list_pair(g, u, found, i, j, ghost, dt)
+            else:
+                for k in range(self.candidates.first[u, i - start], self.candidates.first[u, i - start + 1]):
+                    j = self.candidates.mate[u, k]
+                    if self.near(g, w, i, j):
+                        found = self.list_pair(g, u, found, i, j, j if start <= j < end else ghost, dt)
         for k in range(end - start, self.units.size + 1):
             self.pairs.first[u, k] = found
         return found
+
+    @ti.func
+    def near(self, g: ti.template(), w, i, j):
+        """Whether two grains are near enough to be listed."""
+        apart = [g.place[a][w, i] - g.place[a][w, j] for a in ti.static(range(g.axes))]
+        far = g.reach[w, i] + self.margin[0] + g.reach[w, j]
+        return dot(apart, apart) < far * far
 
     @ti.func
     def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
@@ -184,8 +208,13 @@ class Neighbours:
         shift = self.walls.shift(w, t)
         for i in range(start, end):
             self.contacts.first[u, i - start] = found
-            reach = self.grains.reach[w, i] + self.margin[0]
-            for feature in range(self.walls.features):
+            reach, begin, last = self.grains.reach[w, i] + self.margin[0], 0, self.walls.features
+            if ti.static(self.walled):
+                begin, last = self.candidates.wall_first[u, i - start], self.candidates.wall_first[u, i - start + 1]
+            for k in range(begin, last):
+                feature = k
+                if ti.static(self.walled):
+                    feature = self.candidates.feature[u, k]
                 # A contact may begin when a grain slides past a segment's end, so grains beyond it are listed too.
                 if self.walls.near(feature, shift, self.grains.place[0][w, i], self.grains.place[1][w, i], reach):
                     found = self.list_contact(self.grains, u, found, i, feature, shift, dt)
@@ -239,11 +268,15 @@ class Neighbours:
     @ti.func
     def list_all(self, u, t, dt):
         """Rebuild both neighbour lists; returns False, with the old lists in place, if they do not fit."""
-        w = self.units.world(u)
+        w, known = self.units.world(u), True
+        if ti.static(not self.units.single):
+            known = self.candidates.found(self.grains, self.cells, u, t, self.margin[0])
         self.pairs.set_aside(u)
         self.contacts.set_aside(u)
-        pairs, contacts = self.list_pairs(self.grains, self.cells, u, dt), self.list_contacts(u, t, dt)
-        fits = pairs <= self.pairs.capacity and contacts <= self.contacts.capacity
+        pairs, contacts = 0, 0
+        if known:
+            pairs, contacts = self.list_pairs(self.grains, self.cells, u, dt), self.list_contacts(u, t, dt)
+        fits = known and pairs <= self.pairs.capacity and contacts <= self.contacts.capacity
         if fits:
             self.pairs.length[u], self.contacts.length[u] = pairs, contacts
             self.pairs.pad(u)

@@ -1,0 +1,1 @@
+"""Which grains and walls may touch: candidates, and the lists of contacts that are filtered from them."""

@@ -1,0 +1,127 @@
+"""Candidates: pairs, and grains beside walls, that may come near each other before long.
+
+The lists of contacts are filtered from them, some times over, before the cells are searched again: an outer and an
+inner Verlet list, as in GROMACS (Páll et al. 2020, J. Chem. Phys. 153, 134110). Cells hold four times as many.
+"""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.state import Grains
+from solvers.machine.state import Axis, State
+from solvers.machine.units import Units
+from solvers.space.axes import dot, named
+from solvers.tank.walls import Walls
+
+ROOM, MORE = (8, 3), (512, 16)  # of pairs and wall features: per grain, and more (all pairs of 40 grains)
+
+
+@ti.data_oriented
+class Candidates:
+    """For each grain i of a unit the grains j > i of the unit, and all others, that may come as near as is listed.
+
+    They hold while no grain has moved by half the `slack` (m) since they were `seen`, and are `known`, by world. In the
+    step in which they are renewed `renewed` is 1. Walls are left out where they move.
+    """
+
+    def __init__(self, arrays: State, units: Units, grains: Grains, walls: Walls, slack: float, room: int, across: int):
+        self.units, self.grains, self.walls, self.walled = units, grains, walls, not walls.moving
+        own, world = arrays.under("candidates"), Axis("world", grains.worlds)
+        capacity, walled = (room * (each * units.size + more) for each, more in zip(ROOM, MORE, strict=True))
+        self.capacity, self.wall_capacity = capacity + 2 * room * across, walled if self.walled else 1
+        starts = units.axis, Axis("start", units.size + 1)
+        self.first, self.wall_first = own.integers(starts, "first", "wall_first")
+        (self.mate,) = own.integers((units.axis, Axis("candidate", self.capacity)), "mate")
+        (self.feature,) = own.integers((units.axis, Axis("beside", self.wall_capacity)), "feature")
+        self.seen = own.reals((world, Axis("grain", grains.count)), *named("seen", grains.axes), kind=own.place)
+        (self.known,) = own.integers((world,), "known")
+        (self.renewed,) = own.integers((world,), "renewed", kept=False)
+        self.slack = own.holding("slack", np.array([slack]), "one")
+
+    def forget(self) -> None:
+        """Have them sought anew before the next lists."""
+        self.known.fill(0)
+
+    @ti.func
+    def outdated(self, w):
+        """Whether they must be sought anew: not known, or some grain has moved by half the slack."""
+        farthest = ti.cast(0.0, self.grains.real)
+        for i in range(self.grains.mobile):
+            gone = [
+                ti.cast(self.grains.place[a][w, i] - self.seen[a][w, i], self.grains.real)
+                for a in ti.static(range(self.grains.axes))
+            ]
+            farthest = ti.max(farthest, dot(gone, gone))
+        return self.known[w] == 0 or ti.sqrt(farthest) > 0.5 * self.slack[0]
+
+    @ti.func
+    def renew(self, w):
+        """Have the units of a world seek them anew if they are outdated; returns whether they are."""
+        self.renewed[w] = ti.cast(self.outdated(w), ti.i32)
+        if self.renewed[w] == 1:
+            self.known[w] = 1
+            for i in range(self.grains.mobile):
+                for a in ti.static(range(self.grains.axes)):
+                    self.seen[a][w, i] = self.grains.place[a][w, i]
+        return self.renewed[w] == 1
+
+    @ti.func
+    def found(self, g: ti.template(), c: ti.template(), u, t, margin):
+        """Seek those of a unit if they are to be renewed; False if there is no room for them."""
+        fits, w = True, self.units.world(u)
+        if self.renewed[w] == 1:
+            fits = self.seek(g, c, u, t, margin)
+            if not fits:
+                self.known[w] = 0
+        return fits
+
+    @ti.func
+    def seek(self, g: ti.template(), c: ti.template(), u, t, margin):
+        """Seek those of a unit among sorted grains, up to gaps (m) of `margin` and the slack; False without room.
+
+        What a grain has near it comes at random: without branches the processor guesses nothing wrong.
+        """
+        w, found = self.units.world(u), 0
+        start, end, last = self.units.first(u), self.units.end(u), self.capacity - 1
+        for i in range(start, end):
+            self.first[u, i - start] = found
+            place = [g.place[a][w, i] for a in ti.static(range(g.axes))]
+            reach = g.reach[w, i] + margin + self.slack[0]
+            lower, upper = c.box(w, i)
+            for n in range(c.rows(lower, upper)):
+                # Three adjacent cells of a row are one contiguous range of the sorted grains.
+                row = c.row(lower, upper, n)
+                for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
+                    j = c.sorted[w, k]
+                    apart = [place[a] - g.place[a][w, j] for a in ti.static(range(g.axes))]
+                    far = reach + g.reach[w, j]
+                    self.mate[u, ti.min(found, last)] = j
+                    found += self.mine(i, j, start, end) & ti.cast(dot(apart, apart) < far * far, ti.i32)
+        for k in range(end - start, self.units.size + 1):
+            self.first[u, k] = found
+        return found <= self.capacity and self.seek_walls(g, u, t, margin)
+
+    @ti.func
+    def mine(self, i, j, start, end):
+        """Whether a unit lists the pair of its grain i and grain j, 1 or 0."""
+        found = ti.cast(j > i, ti.i32)
+        if ti.static(not self.units.whole):
+            found = found | (ti.cast(j < i, ti.i32) & (ti.cast(j < start, ti.i32) | ti.cast(j >= end, ti.i32)))
+        return found
+
+    @ti.func
+    def seek_walls(self, g: ti.template(), u, t, margin):
+        """Seek the walls that grains of a unit are beside; returns whether there is room."""
+        w, start, end, found = self.units.world(u), self.units.first(u), self.units.end(u), 0
+        if ti.static(self.walled):
+            shift = self.walls.shift(w, t)
+            for i in range(start, end):
+                self.wall_first[u, i - start] = found
+                reach = g.reach[w, i] + margin + self.slack[0]
+                for feature in range(self.walls.features):
+                    if self.walls.near(feature, shift, g.place[0][w, i], g.place[1][w, i], reach):
+                        self.feature[u, ti.min(found, self.wall_capacity - 1)] = feature
+                        found += 1
+            for k in range(end - start, self.units.size + 1):
+                self.wall_first[u, k] = found
+        return found <= self.wall_capacity
