@@ -66,7 +66,7 @@ class Simulation:
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = max(stretch, scene.soft_stride) if alone else 1
-        self.steps, self.room, self.vectors, self.among = 0, 1, wide.pays(), worlds  # `among`: worlds at the start
+        self.steps, self.room, self.vectors, self.among = 0, 1, wide.lanes(), worlds  # `among`: worlds at the start
         self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
@@ -322,7 +322,7 @@ class Simulation:
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
         if (room, units, vectors, among) != (self.room, self.units_a_world, self.vectors, self.among):
             self.arrays.release()
-            self.room, self.units_a_world, self.vectors, self.among = room, units, bool(vectors), among
+            self.room, self.units_a_world, self.vectors, self.among = room, units, vectors, among
             self.schedule_name = list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)

@@ -268,7 +268,7 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
     # Kernels that hold water's as well cannot be on real vectors: Taichi aborts.
     discs_alone = scene.shapes is None and not units.single and scene.water is None
-    laws.wide = setting.vectors and laws.fit and discs_alone
+    laws.wide = setting.vectors if laws.fit and discs_alone else 0
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
     bridges = scene.longest_bridge
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()

@@ -17,7 +17,7 @@ class Setting:
     A world is cut into `bands`, or with `per_particle` into single particles. `shares` (W, pieces) are the factors with
     which the carrier responds to the load on each piece (`Load`). Lists have a `skin` (m) and `room` times the usual
     length, and what is usual of water is shared `among` so many worlds. Steps are up to `stretch` base steps long.
-    `vectors`: blocks may be as wide as registers of 512 bits.
+    `vectors`: lanes of a block of pairs of grains on real vectors, 0 without these.
     """
 
     arrays: State
@@ -31,7 +31,7 @@ class Setting:
     skin: float
     room: int = 1
     stretch: int = 1
-    vectors: bool = False
+    vectors: int = 0
     among: int = 0
 
     def units(self, count: int, more: int = 0) -> Units:

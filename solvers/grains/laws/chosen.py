@@ -22,10 +22,10 @@ class ChosenLaws:
     one kind of grains a law's coefficients are numbers, with several they are vectors of lanes. Laws know the
     `integrator`: the step that `prepare` gets is divided by its `damping`, which keeps dampers stable under it.
 
-    `fit`: whether all laws can be compiled for real vectors (`solvers.machine.wide`); `wide`: whether they are.
+    `fit`: whether all laws can be compiled for real vectors (`solvers.machine.wide`); `wide`: lanes, or 0.
     """
 
-    wide = False
+    wide = 0
 
     def __init__(
         self,

@@ -35,7 +35,7 @@ class ContactList:
         more: tuple[str, ...] = (),
         fleeting: tuple[str, ...] = (),
     ):
-        self.units, self.lanes, self.stride, self.wide = units, lanes, stride, laws.wide
+        self.units, self.lanes, self.stride, self.wide = units, lanes, stride, bool(laws.wide)
         ways = {"across": units.single, "wide": self.wide}
         blocks, across = -(-room // lanes), units.single
         self.capacity = blocks * lanes

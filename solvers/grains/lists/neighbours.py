@@ -17,9 +17,7 @@ from solvers.space.axes import dot, named
 from solvers.space.cells import Cells
 from solvers.tank.walls import Walls
 
-# Pairs a pass of the force loop: two AVX2 registers of 64-bit numbers, a fifth faster than one; on real vectors two of
-# AVX-512, a seventh faster than one.
-LANES, WIDE = 8, 16
+LANES = 8  # pairs a pass of the force loop: two AVX2 registers of 64-bit numbers, a fifth faster than one
 # Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more). A unit of a single
 # grain lists all of its neighbours (full list).
 ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
@@ -57,7 +55,7 @@ class Neighbours:
         self.units, self.grains, self.walls, self.laws = units, grains, walls, laws
         (pairs, more_pairs), (contacts, more_contacts) = ROOM[units.single]
         across = 0 if units.whole or units.single else 8 * int(np.sqrt(units.mobile))  # pairs with other units
-        lanes = 1 if units.single else WIDE if laws.wide else self.lanes
+        lanes = 1 if units.single else laws.wide or self.lanes
         pairs, contacts = pairs * units.size + across + more_pairs, contacts * units.size + more_contacts
         more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())
         fleeting, more_fleeting = self.pair_fleeting, self.wall_fleeting

@@ -35,16 +35,17 @@ OTHERS = [
 WET = {"humidity": 0.7, "bridge_volume": 1e-12, "contact_angle": 0.3, "surface_tension": 0.072}
 
 
-def thrown(pays, threads=1, **models):
+def thrown(lanes, threads=1, **models):
     """What two worlds of 42 grains thrown at each other and at a rough floor have become."""
-    run = throw(pays, threads, **models)
-    assert run.wide == pays
+    run = throw(lanes, threads, **models)
+    assert run.wide == (lanes > 0)
+    assert run.grains.lists.pairs.lanes == (lanes or 8)
     return ended(run, STEPS)
 
 
 def test_without_real_vectors_kernels_compile_as_users_have_them():
-    """With Taichi's optimiser, which tests do without: on processors without AVX-512 it once ended the process."""
-    steps = 'from tests.solvers.grains.test_wide import throw; throw(False, tangential="mindlin").advance(10)'
+    """With Taichi's optimiser, which tests do without: it once ended the process."""
+    steps = 'from tests.solvers.grains.test_wide import throw; throw(0, tangential="mindlin").advance(10)'
     outside = {name: value for name, value in os.environ.items() if name != "CARGOLAB_COMPILE"}
     root = Path(__file__).parents[3]
     subprocess.run([sys.executable, "-c", steps], env=outside, cwd=root, check=True, timeout=300)
@@ -58,10 +59,10 @@ def ended(run, steps):
     return found
 
 
-def throw(pays, threads=1, **models):
-    """The grains as they are thrown, on a processor for which vectors pay or do not."""
+def throw(lanes, threads=1, **models):
+    """The grains as they are thrown, on a processor for which blocks on real vectors have so many lanes, or none do."""
     patched = pytest.MonkeyPatch()
-    patched.setattr(wide, "pays", lambda: pays)
+    patched.setattr(wide, "lanes", lambda: lanes)
     row, column = np.divmod(np.arange(42), 7)
     place = np.column_stack([3.1e-3 * (column - 3) + 0.4e-3 * (row % 2), 3.1e-3 + 2.95e-3 * row])
     rng = np.random.default_rng(1)
@@ -85,15 +86,16 @@ def agree(one, other):
 
 
 # Where the processor has none no run has such kernels; the slow tests compile them all the same.
-@pytest.mark.skipif(not wide.has_wide_registers(), reason="kernels are on real vectors where there is AVX-512 only")
+@pytest.mark.skipif(not wide.registers(), reason="kernels are on real vectors where there is AVX2 or AVX-512 only")
 def test_real_vectors_move_grains_as_scalars_do():
-    agree(thrown(False, tangential="mindlin"), thrown(True, tangential="mindlin"))
+    agree(thrown(0, tangential="mindlin"), thrown(wide.registers() // 32, tangential="mindlin"))
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("lanes", [8, 16])
 @pytest.mark.parametrize("models", OTHERS, ids=str)
-def test_every_law_and_integrator_is_right_on_real_vectors(models):
-    one, other = thrown(False, **models), thrown(True, **models)
+def test_every_law_and_integrator_is_right_on_real_vectors(models, lanes):
+    one, other = thrown(0, **models), thrown(lanes, **models)
     if "precision" in models:
         np.testing.assert_allclose(other["position"], one["position"], atol=0.02 * RADIUS)
     else:
@@ -110,9 +112,9 @@ def afloat(handover):
     return [Vessel(ship, (0.0, 0.02), handover=handover)] * 2
 
 
-@pytest.mark.skipif(not wide.has_wide_registers(), reason="kernels are on real vectors where there is AVX-512 only")
+@pytest.mark.skipif(not wide.registers(), reason="kernels are on real vectors where there is AVX2 or AVX-512 only")
 def test_real_vectors_bear_a_ship_in_mixed_precision():
-    run = throw(True, tangential="mindlin", precision="mixed", vessels=afloat(None))
+    run = throw(8, tangential="mindlin", precision="mixed", vessels=afloat(None))
     assert np.isfinite(ended(run, 20)["position"]).all()
 
 
@@ -131,31 +133,32 @@ def test_real_vectors_bear_a_ship_in_mixed_precision():
 )
 def test_real_vectors_bear_every_carrier_in_every_precision(carried, precision):
     """Whole vectors may not change their precision: a ship with grains once ended the process."""
-    one, other = (thrown(pays, tangential="mindlin", precision=precision, **carried) for pays in (False, True))
+    one, other = (thrown(lanes, tangential="mindlin", precision=precision, **carried) for lanes in (0, 8))
     np.testing.assert_allclose(other["position"], one["position"], atol=0.02 * RADIUS)
     np.testing.assert_allclose(other["pose"], one["pose"], atol=1e-5)
 
 
 @pytest.mark.slow
 def test_real_vectors_give_the_same_bits_on_any_number_of_threads():
-    one, two = (thrown(True, threads, tangential="mindlin") for threads in (1, 2))
+    one, two = (thrown(8, threads, tangential="mindlin") for threads in (1, 2))
     for name, values in one.items():
         np.testing.assert_array_equal(two[name], values, err_msg=name)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("pays", "cohesion"), [(True, "none"), (False, "none"), (True, "bridge"), (False, "bridge")])
-def test_a_state_goes_on_with_the_same_bits_on_another_kind_of_processor(pays, cohesion):
+@pytest.mark.parametrize("cohesion", ["none", "bridge"])
+@pytest.mark.parametrize(("lanes", "others"), [(8, 0), (0, 8), (16, 8), (8, 16)])
+def test_a_state_goes_on_with_the_same_bits_on_another_kind_of_processor(lanes, others, cohesion):
     """It tells whether it is of vectors; one that does not, as older ones, is taken for the processor's own."""
-    run = throw(pays, tangential="mindlin", cohesion=cohesion)
+    run = throw(lanes, tangential="mindlin", cohesion=cohesion)
     run.advance(STEPS // 2)
     state, rest = run.state(), STEPS - STEPS // 2
     found = ended(run, rest)
-    elsewhere = throw(not pays, tangential="mindlin", cohesion=cohesion)
+    elsewhere = throw(others, tangential="mindlin", cohesion=cohesion)
     elsewhere.restore(state)
-    assert elsewhere.wide == pays
+    assert elsewhere.wide == (lanes > 0)
     for name, values in ended(elsewhere, rest).items():
         np.testing.assert_array_equal(values, found[name], err_msg=name)
-    alike = throw(pays, tangential="mindlin", cohesion=cohesion)
+    alike = throw(lanes, tangential="mindlin", cohesion=cohesion)
     alike.restore(state | {"numbers": state["numbers"][:-1]})
     np.testing.assert_array_equal(ended(alike, rest)["position"], found["position"])
