@@ -32,9 +32,10 @@ def real_vectors(wanted: bool = True) -> Iterator[None]:
 
 
 def lanes() -> int:
-    """Lanes of a block of pairs of grains on real vectors: two registers of 64-bit numbers, a seventh faster than one.
+    """Lanes of a block of pairs of grains on real vectors: two registers of 64-bit numbers.
 
-    0, for no real vectors, on other processors and where kernels are to compile fast.
+    With AVX-512 two are a seventh faster than one. 0, for no real vectors, on other processors and where kernels are to
+    compile fast.
     """
     return 0 if compiling.quick() else registers() // 32
 

@@ -1,7 +1,7 @@
 """Candidates: pairs, and grains beside walls, that may come near each other before long.
 
 The lists of contacts are filtered from them, some times over, before the cells are searched again: an outer and an
-inner Verlet list, as in GROMACS (Páll et al. 2020, J. Chem. Phys. 153, 134110). Cells hold four times as many.
+inner Verlet list, as in GROMACS (Páll et al. 2020, J. Chem. Phys. 153, 134110). Cells hold four times as many pairs.
 """
 
 import numpy as np
