@@ -113,7 +113,7 @@ def _step(preset: Preset, scene: Scene) -> float:
             scene.soft_stride = longest = _soft_stride(preset, scene, wanted)
             wanted = min(wanted, soft_limit(scene, LEVELS[run.accuracy].longer_steps) / longest)
     elif limits:
-        check_forced(wanted, limits[0].step, usual, limits[0].reason, run.force_step)
+        check_forced(wanted, limits, usual, run.force_step)
     # Between two rows of the series lies a whole number of the longest steps, of grains and of water.
     count = longest * max(1, ceil(interval / (longest * wanted) - 1e-9))
     of_water = ceil(count / longest_pace(scene, interval / count))

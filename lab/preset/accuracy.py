@@ -1,9 +1,11 @@
 """Levels of accuracy: one word of a preset, and the settings behind it. `cargolab bench accuracy` measures them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from lab.base.errors import LabError
 from lab.preset.units import show
+from solvers.machine.limit import Limit, furthest
 
 # Largest relative errors of the restitution at the derived step, and at draft's 1.6 times that step. `cargolab verify`
 # and the tests check them for all five normal laws, restitution 0.02 to 1, grains and walls, contacts that begin
@@ -38,21 +40,17 @@ LEVELS = {
 }
 DEFAULT = "standard"
 
-# The largest step that may be forced, in derived steps: about 12 steps per collision. The error of restitution is up to
-# 1 % there, and beds still settle as they should. With larger steps friction with history is no longer stable in the
-# most compressed packings.
-FURTHEST = 2.0
 
-
-def check_forced(step: float, derived: float, usual: float, reason: str, force: bool) -> None:
+def check_forced(step: float, limits: Sequence[Limit], usual: float, force: bool) -> None:
     """Raise LabError for a step (s) longer than the `usual` one of the level if it is not forced, or than what may be.
 
-    At most FURTHEST times the `derived` step, that of standard, may be forced.
+    The derived step, that of standard, is the first of `limits`.
     """
-    if step > FURTHEST * derived:
+    derived, reason, most = limits[0].step, limits[0].reason, furthest(limits)
+    if step > most:
         raise LabError(
             f"run.step: {show(step, 's')} is {step / derived:.3g} times the limit of {show(derived, 's')} ({reason}), "
-            f"and the run may go wrong unnoticed; leave it out, or force at most {FURTHEST:g} times the limit."
+            f"and the run may go wrong unnoticed; leave it out, or force at most {most / derived:.3g} times the limit."
         )
     if step > usual and not force:
         stretched = "" if usual == derived else f", {usual / derived:.3g} times that at this accuracy"

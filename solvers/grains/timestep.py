@@ -1,6 +1,7 @@
 """The time step derived from the scene: limits of Rayleigh waves, of the contact laws, and of the speed check."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import product
 from math import pi, sqrt
 
@@ -12,6 +13,10 @@ from solvers.grains.materials import Interface, Material
 from solvers.machine.limit import Limit
 
 RAYLEIGH_SHARE = 0.2
+# Times the bounds of the contact laws: about 9 steps a collision. The error of the restitution is a few per cent there,
+# and beds still settle as they should. With larger steps springs with history are no longer stable in the most
+# compressed packings (`cargolab bench stability`).
+FURTHEST = 3.0
 SLOWEST = 1e-3  # m/s: steps are derived for closing speeds of at least this
 LEAST_SHARE = 0.9  # of the derived step
 FASTER = 1.5  # times the highest credible speed: what the speed check must still accept
@@ -74,7 +79,8 @@ def limits(
 ) -> list[Limit]:
     """All bounds on the step for grains of at least the radius `smallest` (m) with closing speeds up to `speed` (m/s).
 
-    `laws` are the contact laws of the scene; each gives its own limits (`limits`). `share` is the smallest share of its
+    `laws` are the contact laws of the scene; each gives its own limits (`limits`), of which firm ones are of stability,
+    and may not be forced. `share` is the smallest share of its
     mass with which a grain resists a push on its outline: less than 1 if the push also turns it.
     """
     mass = share * 4.0 / 3.0 * pi * smallest**3 * grain.density
@@ -90,8 +96,9 @@ def limits(
         (interfaces[1], mass, smallest, "the smallest grain and a wall"),
     ):
         for law in laws:
-            for step, reason in law.limits(between, m_eff, r_eff, speed):
-                found.append(Limit(step, f"{reason} of {name} at {speed:.3g} m/s"))
+            for limit in law.limits(between, m_eff, r_eff, speed):
+                reason = f"{limit.reason} of {name} at {speed:.3g} m/s"
+                found.append(replace(limit, reason=reason, forced=1.0 if limit.firm else FURTHEST))
     return sorted(found, key=lambda limit: limit.step)
 
 
@@ -112,5 +119,5 @@ def limits_of_grains(scene, speed: float) -> list[Limit]:
     reach = INTEGRATORS[scene.integrator].reach
     of = "" if reach == 1.0 else f"{reach:g} of "
     tightest = min(found.values(), key=lambda bounds: bounds[0].step)
-    bounds = [Limit(reach * limit.step, of + limit.reason) for limit in tightest]
+    bounds = [replace(limit, step=reach * limit.step, reason=of + limit.reason) for limit in tightest]
     return [*bounds, watched(scene.sizes[0], speed, scene.radius.shape[1], scene.shapes is not None)]

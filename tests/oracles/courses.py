@@ -7,10 +7,10 @@ from math import ceil
 
 import numpy as np
 
-from lab.preset.accuracy import FURTHEST
 from solvers.grains.bed.filling import SPACING, radii, start_positions
 from solvers.grains.materials import Material, hertz_stiffness
 from solvers.machine.errors import BadState
+from solvers.machine.limit import furthest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.scenes import box, material
@@ -219,7 +219,7 @@ def hard(
 ) -> Course:
     """The course of a trial at the automatic step, which must be sound.
 
-    At the longest step that the lab admits, FURTHEST times the limit, the trial must end in a sentence of the watch, or
+    At the longest step that the lab admits the trial must end in a sentence of the watch, or
     its measure be right within the share `within`, and no energy made beyond a ripple. In a chaotic case the measure is
     a mean over `starts` a nanometre apart, as a single course is as good as a draw.
     """
@@ -227,7 +227,7 @@ def hard(
         course = followed(run, trial, trial.scene.time_step())
         sound(trial, course, energy)
         if measure:
-            longer = followed(run, trial, FURTHEST * trial.scene.step_limits()[0].step)
+            longer = followed(run, trial, furthest(trial.scene.step_limits()))
             if not longer.stopped:
                 wanted, found = (_mean(run, trial, one, measure, starts) for one in (course, longer))
                 assert abs(found - wanted) <= within * abs(wanted)

@@ -38,6 +38,5 @@ class CountedLaws(ChosenLaws):
         """Energy (J) S²/(2 k_t) of a block's shear springs, as they were left last."""
         c, root = self.coefficients(1, u, kind, contacts, block), contacts.root_before[u, block]
         spring = c[1] * contacts.stiffness[u, block] * root
-        held = contacts.stretched[u, block] - spring * contacts.ahead[u, block]
-        held = ti.select(c[0] > 0.0, held, 0.0 * held)  # smooth grains: what it is ahead is cut in the next step
+        held = contacts.stretched[u, block]
         return (0.5 * held * held / greater(spring, SOFTEST)).sum()

@@ -26,7 +26,7 @@ class Gear:
     """
 
     extra, reach, damping = DERIVATIVES, 0.25, 0.15
-    ahead, stiffer, late = 0.5, 0.5, 0.0
+    ahead, stiffer, late = 0.5, 1.0 / 3.0, 0.0
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):

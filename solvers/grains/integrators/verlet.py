@@ -19,7 +19,7 @@ class Verlet:
     """
 
     extra, reach, damping = 0, 1.0, 1.0
-    ahead, stiffer, late = 0.5, 1.0 / 6.0, 0.5
+    ahead, stiffer, late = 0.5, -1.0 / 12.0, 0.5
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):

@@ -6,6 +6,7 @@ import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus, size
 
 STEPS = 36.0  # per period of two grains that oscillate about the balance of pull and elasticity
@@ -41,14 +42,14 @@ class Capillary:
     memory = ("bridged", "bridge_last")
     pulls = True
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and reasons: f₀ against Hertz's elasticity, (3/2) f₀/ξ (N/m) at k ξ^(3/2) = f₀."""
         pull = self.coefficients(between)[0] * radius
         if pull == 0.0:
             return []
         depth = (pull / hertz_stiffness(between.young_modulus, radius)) ** (2.0 / 3.0)
         period = 2.0 * pi * (mass * depth / (1.5 * pull)) ** 0.5
-        return [(period / STEPS, f"1/{STEPS:.0f} of the swing under the pull of a liquid bridge")]
+        return [Limit(period / STEPS, f"1/{STEPS:.0f} of the swing under the pull of a liquid bridge")]
 
     @ti.func
     def pull(self, contacts: ti.template(), w, block, approach, rate, dt):

@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
 from solvers.grains.materials import Interface
+from solvers.machine.limit import Limit
 from solvers.machine.wide import minus
 
 TURNING = 1e-3  # rad/s, where the ramp ends: under the full torque a 3 mm grain creeps 5 mm an hour
@@ -32,7 +33,7 @@ class ConstantTorque:
         """[μ_r]."""
         return [between.rolling_friction]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """None: the ramp is split, so that it is stable at any step."""
         return []
 

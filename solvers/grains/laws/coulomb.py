@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
 from solvers.grains.materials import Interface
+from solvers.machine.limit import Limit
 from solvers.machine.wide import minus, size
 
 SLIP = 1e-6  # m/s, where the ramp ends: creep of 4 mm an hour under a load at the Coulomb cap
@@ -31,7 +32,7 @@ class Coulomb:
         """[μ]."""
         return [between.friction]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """None: the ramp is split, so that it is stable at any step."""
         return []
 

@@ -3,10 +3,11 @@
 import taichi as ti
 
 from solvers.grains.laws.extremes import within
-from solvers.grains.laws.history import M_T, STIFFEST, stiffening
+from solvers.grains.laws.history import M_T, STIFFEST, over_the_step, stiffening
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
 
 
@@ -17,8 +18,8 @@ class CundallStrack:
     k_t = (4 G*/E*) k_l with the spring k_l of the linear normal law, whichever normal law is chosen. The ratio is
     Mindlin's (1949), 2(1 − ν)/(2 − ν) for equal materials. The contact history S is a force. Since k_t does not depend
     on the overlap, the spring's energy is S²/(2 k_t) and a changing overlap creates none; at the Coulomb cap S is cut
-    to the cap and the contact slides. γ_t = A k_t, with the dissipative time A of the material. S is of second order in
-    the step (`solvers.grains.laws.history`); in the first step of a contact it counts from first touch.
+    to the cap and the contact slides. γ_t = A k_t, with the dissipative time A of the material. S follows the slip
+    of each step (`solvers.grains.laws.history`); in the first step of a contact it counts from first touch.
 
     Limits: a spring that does not depend on the load; under light loads it is stiffer than Mindlin's, under heavy ones
     softer. No micro-slip.
@@ -28,49 +29,46 @@ class CundallStrack:
 
     wide = True
     constants = ("shear_spring", "shear_dashpot")
-    memory = ("stretched", "ahead")
+    memory = ("stretched", "sliding")
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, k_t's coefficient, A in s]."""
         ratio = 4.0 * between.shear_modulus / between.young_modulus
         return [between.friction, ratio * spring_coefficient(between.restitution_speed), between.dissipative_time]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them."""
         stiffness = hertz_stiffness(between.young_modulus, radius)
         spring = spring_stiffness(self.coefficients(between)[1], stiffness, mass)
         damped = shear_limit(spring, M_T * mass, between.dissipative_time)
         return [
-            (spring_limit(spring, M_T * mass), "the tangential spring"),
-            (damped, "the tangential spring and its dashpot"),
+            Limit(spring_limit(spring, M_T * mass), "the tangential spring"),
+            Limit(damped, "the tangential spring and its dashpot"),
         ]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """k_t (N/m), stiffened for the step (`history`), and γ_t (N s/m), at most what the step resolves."""
         spring = spring_stiffness(c[1], stiffness, mass)
-        dashpot = ti.min(c[2] * spring, ti.max(AT_ONCE * M_T * mass / dt - spring * dt, 0.0))
+        dashpot = ti.min(c[2] * spring, ti.max(AT_ONCE * M_T * mass / dt - 0.25 * spring * dt, 0.0))
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping) * spring
         return ti.Vector([spring + spring * within(stiffer, STIFFEST), dashpot])
 
     @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
-        cap, spring, touching = c[0] * normal, contacts.shear_spring[w, block], root > 0.0
-        way = slip * dt
-        ahead = ti.select(touching, self.integrator.ahead * way, 0.0 * way)
+        cap, spring = c[0] * normal, contacts.shear_spring[w, block]
         begins = root * root < rate * dt
-        behind = ti.select(begins, ahead, contacts.ahead[w, block])
-        behind = ti.select(touching, behind, 0.0 * way)
-        come = ti.select(begins, slip * root * root / rate, way - behind)
-        held = within(contacts.stretched[w, block] + spring * come, cap)
-        contacts.stretched[w, block] = held + spring * behind
-        contacts.ahead[w, block] = ahead
+        sliding = over_the_step(slip, contacts.sliding[w, block], self.integrator.ahead)
+        way = ti.select(begins, slip * (root * root / rate), sliding * dt)
+        held = within(contacts.stretched[w, block] + spring * way, cap)
+        contacts.stretched[w, block] = held
+        contacts.sliding[w, block] = ti.select(root > 0.0, sliding, 0.0 * sliding)
         return within(minus(held) - contacts.shear_dashpot[w, block] * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
         spring = entry(contacts.shear_spring, w, block, lane)
-        held = entry(contacts.stretched, w, block, lane) - spring * entry(contacts.ahead, w, block, lane)
+        held = entry(contacts.stretched, w, block, lane)
         return 0.5 * held * held / spring

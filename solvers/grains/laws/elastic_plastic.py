@@ -8,6 +8,7 @@ from solvers.grains.laws.extremes import within
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import AT_ONCE, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
 
 
@@ -37,11 +38,11 @@ class ElasticPlastic:
         spring = 2.25 * friction**2 * spring_coefficient(between.restitution_speed)
         return [friction, spring, 2.0 * between.rolling_damping * sqrt(1.4)]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them."""
         stiffness = hertz_stiffness(between.young_modulus, radius)
         spring = spring_stiffness(self.coefficients(between)[1], stiffness, mass) * radius**2
-        return [(spring_limit(spring, 0.4 * mass * radius**2), "the rolling spring")]
+        return [Limit(spring_limit(spring, 0.4 * mass * radius**2), "the rolling spring")]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):

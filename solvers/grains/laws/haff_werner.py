@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
 from solvers.grains.materials import Interface
+from solvers.machine.limit import Limit
 from solvers.machine.wide import minus, size
 
 
@@ -30,7 +31,7 @@ class HaffWerner:
         damping = between.shear_damping
         return [between.friction, damping, FOLLOWING / damping if damping else 0.0]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """None: the damper is split, so that it is stable at any step."""
         return []
 

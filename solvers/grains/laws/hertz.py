@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.limit import Limit
 from solvers.machine.wide import entry
 
 # Per collision, with Verlet's scheme and contacts that begin anywhere in a step. An elastic collision then keeps its
@@ -35,10 +36,10 @@ class Hertz:
         """None."""
         return []
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them."""
         collision = hertz_duration(mass, radius, between.young_modulus, speed)
-        return [(collision / ELASTIC_STEPS, f"1/{ELASTIC_STEPS:.0f} of the Hertz collision")]
+        return [Limit(collision / ELASTIC_STEPS, f"1/{ELASTIC_STEPS:.0f} of the Hertz collision")]
 
     def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
         """Largest overlap (m) of a head-on impact without losses, (5 m v²/(4 k))^(2/5)."""

@@ -7,6 +7,7 @@ from solvers.grains.laws.hertz import Hertz, hertz_duration
 from solvers.grains.laws.kick import cut_at_zero, reached
 from solvers.grains.materials import Interface
 from solvers.grains.restitution import CONSTANT, damping_for
+from solvers.machine.limit import Limit
 
 # Steps per collision, at least and times g: restitution 0.02 … 1 is right to 0.1 %, measured.
 STEPS, DAMPED_STEPS = 28.0, 50.0
@@ -32,11 +33,11 @@ class HertzDashpot(Hertz):
         """[g v^(1/5)], v in m/s."""
         return [damping_for(between.restitution, CONSTANT) * between.restitution_speed**0.2]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them."""
         collision = hertz_duration(mass, radius, between.young_modulus, speed)
         steps = max(STEPS, DAMPED_STEPS * self.coefficients(between)[0] * speed**-0.2)
-        return [(collision / steps, f"1/{steps:.0f} of the Hertz collision")]
+        return [Limit(collision / steps, f"1/{steps:.0f} of the Hertz collision")]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):

@@ -8,6 +8,10 @@ from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
 from solvers.grains.laws.kick import cut_at_zero, reached
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.limit import Limit
+
+BORNE = 1.65  # of the damper's derived step: longer ones are not stable in the most compressed packings
+LEAST = 1e-3  # x of a damper that limits nothing
 
 
 def damping(between: Interface, mass: float, radius: float, speed: float) -> float:
@@ -40,16 +44,21 @@ class HertzViscoelastic(Hertz):
         """[(3/2) A in s]."""
         return [1.5 * between.dissipative_time]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them.
 
         The error of the restitution grows with the damping x, and √x times the steps of an elastic collision keep it at
         0.1 % for restitutions from 0.02 to 1. For x > 1 the damper's own limit of stability counts, in a grain that
-        touches six others as deep as in the hardest impact: x times the steps are half of it.
+        touches six others as deep as in the hardest impact: x times the steps are half of it, with Gear's scheme three
+        fifths. No step, forced or not, may be longer than BORNE of that.
         """
         collision, x = hertz_duration(mass, radius, between.young_modulus, speed), damping(between, mass, radius, speed)
         steps = ELASTIC_STEPS * max(1.0, sqrt(x), x)
-        return [(collision / steps, f"1/{steps:.0f} of the Hertz collision")]
+        firm = BORNE * collision / (ELASTIC_STEPS * max(x, LEAST))
+        return [
+            Limit(collision / steps, f"1/{steps:.0f} of the Hertz collision"),
+            Limit(firm, "what the normal damper bears", firm=True),
+        ]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):

@@ -1,18 +1,20 @@
-"""Springs with contact history: the slip distance at the time of the positions, to second order in the step.
+"""Springs with contact history: the slip distance at the time of the positions, as the integrator has gone it.
 
-Contacts see velocities that the integrator predicts for the time of the positions: w_n = u_(n−1/2) + (Δt/2) a_(n−1) in
-Verlet's scheme. The sum Q_n = Δt Σ w_j leads the true distance s_n by half a step, Q_n = s_n + (Δt/2) u + O(Δt²). A
-spring that follows Q_n acts as a spring and a damper k Δt/2, which at 36 steps a collision takes a tenth of an undamped
-oscillation. Here it follows Q_n less half of the previous step,
+Contacts see velocities that the integrator predicts for the time of the positions. In Verlet's scheme they are
 
-    s_n ≈ Q_n − (Δt/2) w_(n−1) = s_n + (Δt²/4) a_n + O(Δt⁴),
+    w_n = u_(n−1/2) + (Δt/2) a_(n−1) = (3 u_(n−1/2) − u_(n−3/2))/2,
 
-whose terms in Δt³, dampers of either sign, cancel, in any network of contacts. With Verlet's own error, Δt²/12 the
-other way, the oscillation of a single contact is too slow by a share (ω Δt)²/12, like that of a spring softer by
-(ω Δt)²/6, ω² = k/m_t; the spring is made `stiffer` by as much (backward error analysis: Hairer, Lubich and Wanner 2006,
-IX). Symplectic Euler's velocities are those half a step before the positions: its Q_n is s_n, nothing is subtracted
-(`ahead` = 0), and Verlet's error is left. Gear's velocities are those of the positions to higher order: the error of
-the rule is then (Δt²/2) a_n.
+and what the surfaces have slipped in the step that ended is Δt u_(n−1/2). It follows from w_n and its own value of the
+step before: u_(n−1/2) = (w_n + α u_(n−3/2))/(1 + α), α = 1/2 (`ahead`). An error of it falls to a third with each
+step. So the spring's distance is that of the leapfrog, s_n = s_(n−1) + Δt u_(n−1/2): the spring has a potential, and
+is stable for ω Δt < 2, ω² = k/m_t, as one between positions is. (The sum of Δt w_j leads s_n by half a step. Followed
+as it is, it is a spring and a damper k Δt/2, which at 36 steps a collision takes a tenth of an undamped oscillation;
+less half of the previous w, it is of second order, but stable for ω Δt < 1 only.)
+
+The leapfrog's oscillation of a single contact is too fast by a share (ω Δt)²/24, like that of a spring stiffer by
+(ω Δt)²/12; the spring is made softer by as much, `stiffer` = −1/12 (backward error analysis: Hairer, Lubich and Wanner
+2006, IX). Symplectic Euler's velocities are those half a step before the positions, α = 0. Gear's are those of the
+positions to higher order: the rule with α = 1/2 then gives a distance too short by (Δt²/3) a_n.
 """
 
 import taichi as ti
@@ -25,3 +27,9 @@ STIFFEST = 0.1  # largest relative stiffening; (ω Δt)²/6 reaches it only at s
 def stiffening(stiffer, mass, step):
     """Relative stiffening per unit of stiffness (m/N) of a spring in a contact of m_eff (kg) at a step (s)."""
     return stiffer * step * step / (M_T * mass)
+
+
+@ti.func
+def over_the_step(slip, before, ahead):
+    """Slip (m/s) over the step that ended, from the predicted one and that over the step before (0: a new contact)."""
+    return ti.select(before == 0.0, slip, (slip + ahead * before) * (1.0 / (1.0 + ahead)))

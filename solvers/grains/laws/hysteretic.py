@@ -7,6 +7,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.limit import Limit
 from solvers.machine.wide import entry
 
 STEPS = 36.0  # per half period of the stiffer, unloading spring; restitution 0.02 … 1 is right to 0.1 %
@@ -36,11 +37,11 @@ class Hysteretic:
         kept = between.restitution**2
         return [spring_coefficient(between.restitution_speed) / kept, 1.0 - kept]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them."""
         stiffness = hertz_stiffness(between.young_modulus, radius)
         unloading = spring_stiffness(self.coefficients(between)[0], stiffness, mass)
-        return [(pi * sqrt(mass / unloading) / STEPS, f"1/{STEPS:.0f} of half the unloading spring's period")]
+        return [Limit(pi * sqrt(mass / unloading) / STEPS, f"1/{STEPS:.0f} of half the unloading spring's period")]
 
     def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
         """Largest overlap (m) of a head-on impact at a speed (m/s), v √(m/k₁)."""

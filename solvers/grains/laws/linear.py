@@ -9,6 +9,7 @@ from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffne
 from solvers.grains.laws.splitting import felt_rate
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.grains.restitution import damping_ratio_for
+from solvers.machine.limit import Limit
 from solvers.machine.wide import entry
 
 # Steps per half undamped period, at least and times ζ: measured with `felt_rate`, restitution 0.02 … 1 right to 0.1 %.
@@ -37,12 +38,12 @@ class Linear:
         """[k_l's coefficient, 2 ζ]."""
         return [spring_coefficient(between.restitution_speed), 2.0 * damping_ratio_for(between.restitution)]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them."""
         coefficient, twice_ratio = self.coefficients(between)
         stiffness = spring_stiffness(coefficient, hertz_stiffness(between.young_modulus, radius), mass)
         steps = max(STEPS, DAMPED_STEPS * 0.5 * twice_ratio)
-        return [(pi * sqrt(mass / stiffness) / steps, f"1/{steps:.0f} of the undamped collision")]
+        return [Limit(pi * sqrt(mass / stiffness) / steps, f"1/{steps:.0f} of the undamped collision")]
 
     def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
         """Largest overlap (m) of a head-on impact without losses, v √(m/k_l)."""

@@ -5,12 +5,13 @@ from math import sqrt
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
-from solvers.grains.laws.history import M_T, STIFFEST, stiffening
+from solvers.grains.laws.history import M_T, STIFFEST, over_the_step, stiffening
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
 
-RESOLVED = 0.036  # (ω_t Δt)², for a slip right to 1.2 %
+RESOLVED = 0.09  # (ω_t Δt)², for a slip right to 1.2 %
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
 
 
@@ -23,8 +24,8 @@ class Mindlin:
     otherwise a changing overlap creates energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the
     normal law, at most what the step resolves. At the Coulomb cap S is cut to the cap: the contact slides.
 
-    S is of second order in the step (`solvers.grains.laws.history`). To keep this order at first touch, where k_t ~ √ξ
-    begins, a step uses the mean of √ξ over its length, or since first touch.
+    S follows the slip of each step (`solvers.grains.laws.history`), with the mean of √ξ over its length, or since first
+    touch, where k_t ~ √ξ begins.
 
     Limits: no micro-slip: the contact sticks as a whole until all of it slides (Mindlin and Deresiewicz 1953 have rings
     that slide before). The direction of slip is that of one tangent, in a plane.
@@ -34,25 +35,26 @@ class Mindlin:
 
     wide = True
     constants = ("shear_limit", "shear_stiffer")
-    memory = ("stretched", "ahead", "root_before")
+    memory = ("stretched", "sliding", "root_before")
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, k_t / (k √ξ) = 6 G*/E*, A in s]."""
         ratio = 6.0 * between.shear_modulus / between.young_modulus
         return [between.friction, ratio, between.dissipative_time]
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """Longest steps (s) and what sets them, at the largest overlap of a collision without losses.
 
-        The slip that an undamped contact gives back is off by up to (ω_t Δt)²/3 of what it had, ω_t² = k_t/m_t.
+        The slip that an undamped contact gives back is off by up to (ω_t Δt)²/7 of what it had, ω_t² = k_t/m_t, and by
+        a quarter of that in the mean over the moments of onset.
         """
         k = hertz_stiffness(between.young_modulus, radius)
         root = (1.25 * mass * speed**2 / k) ** 0.2
         spring = self.coefficients(between)[1] * k * root
         damped = shear_limit(spring, M_T * mass, between.dissipative_time)
         return [
-            (sqrt(RESOLVED * M_T * mass / spring), "the tangential spring"),
-            (damped, "the tangential spring and its dashpot"),
+            Limit(sqrt(RESOLVED * M_T * mass / spring), "the tangential spring"),
+            Limit(damped, "the tangential spring and its dashpot"),
         ]
 
     @ti.func
@@ -68,21 +70,18 @@ class Mindlin:
         spring = c[1] * contacts.stiffness[w, block] * root
         stiff = spring + spring * within(contacts.shear_stiffer[w, block] * spring, STIFFEST)
         before, now = greater(contacts.root_before[w, block], SMALLEST_ROOT), greater(root, SMALLEST_ROOT)
-        begins = root * root < rate * dt
-        deeper = greater(root - before, 0.0)
-        more = ti.select(begins, root * root, deeper * deeper)
-        more = more / ti.select(begins, 1.5 * rate * dt, 6.0 * now * (now + before))
-        if ti.static(self.integrator.ahead == 0.0):
-            more = more - ti.select(begins, 0.0 * root, 0.5 * deeper / now)  # the step ends here: √ξ of its middle
-        way = slip * dt
-        ahead = self.integrator.ahead * way
-        behind = ti.select(begins, ahead, contacts.ahead[w, block])
-        come = more * way + ti.select(begins, 0.0 * way, way - behind)
-        held = within(contacts.stretched[w, block] * lesser(root / before, 1.0) + stiff * come, cap)
-        contacts.stretched[w, block] = held + stiff * behind
-        contacts.ahead[w, block] = ti.select(root > 0.0, ahead, 0.0 * ahead)
+        begins, deeper = root * root < rate * dt, greater(root - before, 0.0)
+        sliding = over_the_step(slip, contacts.sliding[w, block], self.integrator.ahead)
+        # The mean of √ξ over the step, which ended here, or since first touch, over the present one.
+        more = ti.select(begins, root * root, 0.0 - deeper * (now + before + before))
+        more = more / ti.select(begins, 1.5 * rate * dt, 3.0 * now * (now + before))
+        share = ti.select(begins, more, 1.0 + more)
+        wound = stiff * (share * sliding * dt)
+        held = within(contacts.stretched[w, block] * lesser(root / before, 1.0) + wound, cap)
+        contacts.stretched[w, block] = held
+        contacts.sliding[w, block] = ti.select(root > 0.0, sliding, 0.0 * sliding)
         contacts.root_before[w, block] = root
-        dashpot = lesser(c[2] * spring, greater(contacts.shear_limit[w, block] - stiff * dt, 0.0))
+        dashpot = lesser(c[2] * spring, greater(contacts.shear_limit[w, block] - 0.25 * stiff * dt, 0.0))
         return within(minus(held) - dashpot * slip, cap)
 
     @ti.func
@@ -90,5 +89,5 @@ class Mindlin:
         """Elastic energy S²/(2 k_t) (J) of one contact."""
         spring = c[1] * entry(contacts.stiffness, w, block, lane) * root
         spring += spring * within(entry(contacts.shear_stiffer, w, block, lane) * spring, STIFFEST)
-        held = entry(contacts.stretched, w, block, lane) - spring * entry(contacts.ahead, w, block, lane)
+        held = entry(contacts.stretched, w, block, lane)
         return 0.5 * held * held / spring

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.grains.materials import Interface
+from solvers.machine.limit import Limit
 
 
 @ti.data_oriented
@@ -25,7 +26,7 @@ class NoCohesion:
         """None."""
         return []
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """None."""
         return []
 

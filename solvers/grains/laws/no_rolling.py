@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.grains.materials import Interface
+from solvers.machine.limit import Limit
 
 
 @ti.data_oriented
@@ -24,7 +25,7 @@ class NoRolling:
         """None."""
         return []
 
-    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """None."""
         return []
 

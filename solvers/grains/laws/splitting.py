@@ -9,8 +9,7 @@ from solvers.machine.wide import size
 
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
 # The contact network's largest eigenvalue is 4.3 for six equal spheres around one in a plane, and the scheme, with
-# velocities predicted by half a step, is stable while 4 × damper + spring in these units is less than 4. A spring with
-# history (`history`) needs damper + spring < 1.
+# velocities predicted by half a step, is stable while 4 × damper + spring in these units is less than 4.
 AT_ONCE = 0.2
 FOLLOWING = 0.02
 SPRING = 0.1
@@ -25,9 +24,9 @@ def spring_limit(stiffness: float, inertia: float) -> float:
 def shear_limit(stiffness: float, inertia: float, time: float) -> float:
     """The longest step (s) at which a spring k (N/m) with history and its dashpot A k are stable together in a network.
 
-    A k Δt + k Δt² = 0.2 m, with the dissipative time A (s) and the inertia m (kg).
+    A k Δt + k Δt²/4 = 0.2 m, with the dissipative time A (s) and the inertia m (kg).
     """
-    return 0.5 * (sqrt(time * time + 4.0 * AT_ONCE * inertia / stiffness) - time) if stiffness > 0.0 else inf
+    return 2.0 * (sqrt(time * time + AT_ONCE * inertia / stiffness) - time) if stiffness > 0.0 else inf
 
 
 @ti.func

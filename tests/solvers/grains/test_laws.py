@@ -179,7 +179,8 @@ def test_shear_without_a_cap_and_without_a_force(driven):
 def test_no_closed_path_creates_energy(driven, law):
     """Elata and Berryman (1996): load, shear, unload, shear back and reload, in any order, costs work or nothing.
 
-    At fixed shear a cycle of the load alone leaves no more force than there was.
+    At fixed shear a cycle of the load alone leaves no more force than there was. The slip stops within a step here,
+    which no grain's does; what the spring makes of that has ended 40 steps later.
     """
     contact = driven("hertz", law, between=interface(material(friction=9.0), material(friction=9.0), MASS, RADIUS, 1.0))
     random = np.random.default_rng(5)
@@ -199,7 +200,7 @@ def test_no_closed_path_creates_energy(driven, law):
     held = slowly(DEEP, 0.2 * DEEP, DEEP, 0.2 * DEEP, DEEP)
     slip = np.where(np.arange(len(held)) < 50, shift / 50 / 1e-2, 0.0)
     force, _ = contact.move(held, slip, dt=1e-2)
-    assert np.all(np.diff(np.abs(force[60:, 1])) <= 1e-12 * np.abs(force[:, 1]).max())
+    assert np.all(np.diff(np.abs(force[90:, 1])) <= 1e-12 * np.abs(force[:, 1]).max())
 
 
 @pytest.mark.parametrize("law", ["constant-torque", "elastic-plastic"])

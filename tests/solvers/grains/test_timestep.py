@@ -8,9 +8,10 @@ from scipy.integrate import quad
 
 from solvers.grains.laws import NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.laws.hertz import ELASTIC_STEPS, hertz_duration
-from solvers.grains.laws.hertz_viscoelastic import damping
+from solvers.grains.laws.hertz_viscoelastic import BORNE, damping
 from solvers.grains.materials import Material, effective_young
-from solvers.grains.timestep import closing_speed, rayleigh_time
+from solvers.grains.timestep import FURTHEST, closing_speed, rayleigh_time
+from solvers.machine.limit import furthest
 from solvers.motion import Heave, Roll, Sway, Tilt
 from solvers.scene import Scene
 from tests.oracles.scenes import box, material
@@ -112,7 +113,7 @@ def test_damping_and_slow_waves_shorten_the_step():
     assert "Rayleigh" in still.step_limits()[0].reason
     order = [limit.step for limit in scene().step_limits()]
     assert order == sorted(order)
-    assert len(order) == 4
+    assert len(order) == 6
 
 
 def test_the_harder_of_grain_and_wall_bounds_the_step():
@@ -179,7 +180,17 @@ def test_every_normal_law_bounds_the_step_and_scales_with_stiffness(law):
     assert scene(normal=law, diameter=6e-3).time_step() == pytest.approx(2.0 * step, rel=1e-9, abs=0.0)
     steps = [scene(normal=law, restitution=e).time_step() for e in (1.0, 0.6, 0.1)]
     assert np.all(np.diff(steps) <= 0.0)
-    assert len(scene(normal=law).step_limits()) == 4
+    assert len([limit for limit in scene(normal=law).step_limits() if limit.forced > 1.0]) == 4
+
+
+@pytest.mark.parametrize("restitution", [0.9, 0.5, 0.05])
+def test_a_step_is_not_forced_past_what_a_strong_damper_bears(restitution):
+    """FURTHEST derived steps where damping is weak, BORNE of the damper's own where it is strong; draft's at least."""
+    made = scene(restitution=restitution, stiffness_scale=1e-3)
+    most = furthest(made.step_limits()) / made.time_step()
+    least, largest = {0.9: (FURTHEST, FURTHEST), 0.5: (BORNE, FURTHEST), 0.05: (BORNE, BORNE)}[restitution]
+    assert least - 1e-9 < most < largest + 1e-9
+    assert made.longest_step(1.6) == pytest.approx(1.6 * made.time_step())
 
 
 @pytest.mark.parametrize("tangential", TANGENTIAL)
@@ -187,10 +198,12 @@ def test_every_normal_law_bounds_the_step_and_scales_with_stiffness(law):
 def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
     """Δt² k/m ≤ 0.1 of every spring, which the collision's own step keeps in ordinary scenes.
 
-    Mindlin's is resolved better, for its slip: (ω_t Δt)² ≤ 0.036 in the hardest impact.
+    Mindlin's is resolved by it, too, and its dashpot where the restitution is 0.5 or less.
     """
     laws = {"tangential": tangential, "rolling": rolling}
-    assert (scene(**laws).time_step() < scene().time_step()) == (tangential == "mindlin")
+    assert scene(restitution=0.8, **laws).time_step() == scene(restitution=0.8).time_step()
+    lossy = scene(restitution=0.5, **laws).time_step() < scene(restitution=0.5).time_step()
+    assert lossy == (tangential == "mindlin")
     rough = material(rolling_friction=30.0)
     stiff = Scene(np.full((1, 4), 1.5e-3), TANK, rough, rough, **laws)
     assert (stiff.time_step() < scene(**laws).time_step()) == (rolling == "elastic-plastic")
@@ -213,7 +226,7 @@ def test_the_speed_limit_of_the_watch_is_never_exceeded():
     longest = 0.1 * 1.5e-3 / (1.5 * 16 ** (1 / 16) * 20.0)
     assert made.longest_step(2.75) == pytest.approx(longest, rel=1e-12, abs=0.0)
     gear = Scene(made.radius, TANK, made.grain[0], made.wall[0], start_speed=20.0, integrator="gear")
-    firm = [limit for limit in gear.step_limits() if limit.firm]
+    firm = [limit for limit in gear.step_limits() if limit.firm and limit.forced > 1.0]
     assert [limit.step for limit in firm] == pytest.approx([longest], rel=1e-12, abs=0.0)
     assert "watch" in firm[0].reason
     ordinary = scene()

@@ -8,7 +8,6 @@ from shutil import rmtree
 
 import numpy as np
 
-from lab.preset.accuracy import FURTHEST
 from lab.report.page import Page
 from lab.studies.bench.remembered import remembered
 from lab.studies.bench.speed import processors
@@ -34,6 +33,7 @@ from lab.studies.bench.speed.equal_error.steps import (
 )
 from lab.studies.bench.speed.workers import ratio
 from lab.studies.engine import code
+from solvers.grains.timestep import FURTHEST
 
 OWN = LAB, MIXED, LONGEST
 HEADS = "grains", "step by", "bed", "code", "steps a collision", "step (µs)", "simulated s a wall s"

@@ -12,10 +12,12 @@ from functools import partial
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.accuracy import FURTHEST, LEVELS
+from lab.preset.accuracy import LEVELS
 from lab.studies.bench.peers import lammps, liggghts
 from lab.studies.bench.peers.peer import Task
 from lab.studies.bench.speed.beds import ACETATE, DIAMETER, HEIGHT, SCALE, Bed
+from solvers.machine.limit import furthest
+from solvers.scene import Scene
 from solvers.simulation import Simulation
 
 RUNS = {liggghts: liggghts.run_liggghts, lammps: lammps.run_lammps}
@@ -36,7 +38,8 @@ def steps_taken(codes: Mapping[str, Callable]) -> dict[str, dict[str, float]]:
     found = {SAME: dict.fromkeys([*codes, LONGEST], usual)}
     for error, level in LEVEL_OF.items():
         longest = {name: longest_step(code, error) for name, code in codes.items()}
-        own = {LAB: min(longest[LAB], derived_step(level)), LONGEST: min(longest[LAB], FURTHEST * usual)}
+        forced = min(longest[LAB], furthest(_scene().step_limits()))
+        own = {LAB: min(longest[LAB], derived_step(level)), LONGEST: forced}
         found[f"{100.0 * error:g} % of restitution"] = longest | own
     return found
 
@@ -65,9 +68,12 @@ def longest_step(rebounds: Callable[[float], np.ndarray], error: float) -> float
 
 def derived_step(level: str) -> float:
     """The step (s) that the lab derives at a level of accuracy for collisions at SPEED."""
+    return _scene().longest_step(LEVELS[level].longer_steps)
+
+
+def _scene() -> Scene:
     pair = Bed(np.full(2, 0.5 * DIAMETER), np.zeros((2, 2)), HEIGHT)
-    scene = pair.scene(material=GRAINS, gravity=0.0, start_speed=SPEED)
-    return scene.longest_step(LEVELS[level].longer_steps)
+    return pair.scene(material=GRAINS, gravity=0.0, start_speed=SPEED)
 
 
 def colliders() -> dict[str, Callable[[float], np.ndarray]]:
