@@ -14,13 +14,15 @@ less half of the previous w, it is of second order, but stable for ω Δt < 1 on
 The leapfrog's oscillation of a single contact is too fast by a share (ω Δt)²/24, like that of a spring stiffer by
 (ω Δt)²/12; the spring is made softer by as much, `stiffer` = −1/12 (backward error analysis: Hairer, Lubich and Wanner
 2006, IX). Symplectic Euler's velocities are those half a step before the positions, α = 0. Gear's are those of the
-positions to higher order: the rule with α = 1/2 then gives a distance too short by (Δt²/3) a_n.
+positions to higher order: with α = 1/2 the distance is then s_n + (Δt²/3) a_n, that of a spring softer by (ω Δt)²/3.
 """
 
 import taichi as ti
 
 M_T = 2.0 / 7.0  # of m_eff: effective mass against slip of spheres
-STIFFEST = 0.1  # largest relative stiffening; (ω Δt)²/6 reaches it only at steps far too long for valid results
+STIFFEST = (
+    0.1  # largest relative change of a spring; (ω Δt)²/12 reaches it only at steps far too long for valid results
+)
 
 
 @ti.pyfunc

@@ -33,7 +33,7 @@ LOOKS = dict(zip(DAMPINGS, ((BLUE, "o"), (GREEN, "s"), (VERMILION, "D")), strict
 
 
 def check(fast: bool, integrator: str) -> Found:
-    """The limits of an integrator: derived steps must be stable, and known limits be found."""
+    """The limits of an integrator: derived and forced steps must be stable, and known limits be found."""
     limits = list(found(integrator, fast))
     lines = [line for one in limits for line in _lines(one)]
     ratios = {(_laws(one), one.damping): f"{one.ratio:.2g}" for one in limits}
@@ -49,6 +49,8 @@ def check(fast: bool, integrator: str) -> Found:
 def _lines(one: Limit) -> list[Line]:
     missing, name = max(0.0, 1.0 - one.ratio), f"{_laws(one)}, {one.damping}"
     lines = [Line.off(f"{name}: missing of a derived step", "it is stable", missing, 0.0, "what it is derived for")]
+    missing, most = max(0.0, 1.0 - one.true / one.forced), f"{one.forced / one.derived:.3g} derived steps"
+    lines.append(Line.off(f"{name}: missing of {most}", "it is stable", missing, 0.0, "the longest that may be forced"))
     if one.exact:
         reason = "the bracket, slow growth next to it"
         lines.append(Line(f"{name}: longest step", 1e6 * one.true, 1e6 * one.exact, "2/ω", NEAR_EXACT, reason, "µs"))

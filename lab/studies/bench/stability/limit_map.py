@@ -16,6 +16,7 @@ from lab.studies.bench.speed.beds import ACETATE
 from solvers.grains.laws import NORMAL, TANGENTIAL
 from solvers.grains.materials import Material, effective_young, hertz_stiffness
 from solvers.machine.errors import BadState
+from solvers.machine.limit import furthest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.time.watch import RUNNING
@@ -37,7 +38,7 @@ CONSERVATIVE = ("verlet", "symplectic-euler")  # whose limit on an oscillator is
 class Limit:
     """The longest stable step (s) of an integrator under two laws with a damping, beside the derived one.
 
-    `exact` is 2/ω (s) where that is known, else None.
+    `forced` is the longest (s) that a user may force; `exact` is 2/ω (s) where that is known, else None.
     """
 
     integrator: str
@@ -45,6 +46,7 @@ class Limit:
     tangential: str
     damping: str
     derived: float
+    forced: float
     true: float
     exact: float | None
 
@@ -70,10 +72,12 @@ def limits(integrator: str, normal: str, friction: str) -> Iterator[Limit]:
     for world, (damping, restitution) in enumerate(RESTITUTIONS.items()):
         if normal == "hertz" and world:  # it loses nothing whatever the restitution
             break
-        derived = scene([restitution], integrator, normal, friction).step_limits()[0].step
+        bounds = scene([restitution], integrator, normal, friction).step_limits()
+        derived = bounds[0].step
         true = longest(lambda step, w=world: grows(run, places, w, step), derived)
         known = not world and friction == "none" and integrator in CONSERVATIVE
-        yield Limit(integrator, normal, friction, damping, derived, true, exact_limit(normal) if known else None)
+        exact = exact_limit(normal) if known else None
+        yield Limit(integrator, normal, friction, damping, derived, furthest(bounds), true, exact)
     run.close()
 
 

@@ -34,7 +34,7 @@ ANGLES = np.array([2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.
 OBLIQUE = np.array([0.06, 0.35, 0.68, 1.0, 1.34, 1.67, 2.0, 2.34, 3.0, 3.34, 4.0, 5.0, 6.0, 10.0, 13.0, 20.0])
 SPUN = 0.2 * np.tan(np.radians(np.arange(5.0, 86.0, 5.0)))  # m/s, of the surface
 SLIP_ALLOWED = {DERIVED: 1.3e-2, DRAFT: 0.1}
-SLIP_REASON = {DERIVED: "history O(Δt²): (ω_t Δt)²/3 of the slip", DRAFT: "the same at 1.6 Δt"}
+SLIP_REASON = {DERIVED: "history O(Δt²): (ω_t Δt)²/7 of the slip", DRAFT: "the same at 1.6 Δt"}
 
 
 @cache
