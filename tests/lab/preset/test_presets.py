@@ -86,7 +86,14 @@ def test_given_text_is_the_same_preset(name, tmp_path):
 
 
 @pytest.mark.usefixtures("roughly_packed")
-@pytest.mark.parametrize("name", [name for name in NAMES if name.endswith(QUICK)])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if "s175" in name else name  # her potential flow takes long
+        for name in NAMES
+        if name.endswith(QUICK)
+    ],
+)
 def test_a_quick_variant_states_its_differences_and_differs_only_in_cost(name, monkeypatch):
     monkeypatch.setattr("lab.assembly.grains.start_positions", lambda size, *_: np.zeros((len(size), 2)))  # takes long
     whole, quick = as_shipped(name.removesuffix(QUICK)).resolved, as_shipped(name).resolved

@@ -34,6 +34,7 @@ def test_the_roll_of_an_empty_tank_asks_for_nothing():
     assert np.abs(against) == pytest.approx(0.0, abs=1e-3)  # N m, of 4.9 that drive her
 
 
+@pytest.mark.slow
 def test_a_tank_with_the_moments_of_shallow_water_has_all_of_them():
     """And one with half of them half."""
     roll = 4.0 * np.sin(2.0 * np.pi / 1.944 * TIME) * np.minimum(1.0, TIME / 3.0) ** 2

@@ -54,8 +54,8 @@ def outcome(setting=None, **measures) -> Outcome:
 
 
 EXPERIMENTS = {name: one for part in reports() for name, one in experiments(part).items()}
-# The scenes of others, with so many particles that they take seconds
-FINE = ("impact-air-fine", "impact-air-finest", "prismatic-cost")
+# The scenes of others, with so many particles or panels that they take seconds
+FINE = ("impact-air-fine", "impact-air-finest", "prismatic-cost", "anti-roll-s175")
 
 
 @pytest.mark.usefixtures("roughly_packed")
@@ -166,6 +166,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_a_worker_without_work_is_asked_to_stop_and_says_nothing(tmp_path):
     """It takes no work after it, and leaves when the others do; it once said a traceback on Ctrl-C."""
     script = tmp_path / "idle.py"

@@ -28,6 +28,7 @@ def test_every_reading_has_the_sources_free_roll(reading):
     assert frozen.natural_frequency == pytest.approx(wanted, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_only_both_effects_together_capsize_in_the_sources_waves():
     """Loose cargo in 19 mm at 4.6 rad/s: not by the softening lever alone, nor by counting twice alone, nor frozen."""
     waves = np.array([19.0]), np.array([4.6])

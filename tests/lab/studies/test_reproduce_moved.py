@@ -25,6 +25,7 @@ def pushed(mass: float, drag_coefficient: float):
     return one
 
 
+@pytest.mark.slow
 def test_a_square_has_the_drag_and_the_added_mass_of_its_force():
     one = pushed(1.3, 1.9)
     assert drag.added_mass(one, (0.15, 0.25)) == pytest.approx(1.3, rel=5e-3)

@@ -28,6 +28,7 @@ def peak(request):
     return tests, [[model.sailed(test)[2] for test in tests] for model in models]
 
 
+@pytest.mark.slow
 def test_damping_estimated_from_the_shape_brackets_the_measured_peak(peak):
     """Both readings lie between friction alone and friction with eddies, or within 5 % of that; nothing is fitted."""
     tests, (friction, eddies, _) = peak

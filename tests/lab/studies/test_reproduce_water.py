@@ -167,6 +167,7 @@ def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
     assert {(row.ours, row.verdict) for row in rows} == {("not found", Verdict.CANNOT_TELL)}
 
 
+@pytest.mark.slow
 def test_turns_of_a_wave_are_found_near_the_measured_ones(monkeypatch):
     """A curve through the measured turns, 0.05 s late and 1.2 times as high; and that of potential flow."""
     monkeypatch.setattr(waves, "NODES", 41)

@@ -10,6 +10,7 @@ from lab.studies.reproduce.water.theory.wave_tank import WaveTank
 DEPTH = 0.31
 
 
+@pytest.mark.slow
 def test_low_waves_are_those_of_linear_theory():
     """A piston that swings by a five hundredth of the depth, by Havelock's integral."""
 
@@ -42,6 +43,7 @@ def swung(nodes: int, steps: int):
     return np.array(found).T
 
 
+@pytest.mark.slow
 def test_a_steep_standing_wave_keeps_its_energy_and_its_volume():
     """As it comes down its energy turns from that of weight to that of motion; errors fall as the elements squared."""
     errors = []

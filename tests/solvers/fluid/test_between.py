@@ -49,7 +49,7 @@ def test_eight_modes_have_the_drag_of_stokes_flow():
     assert drag.real == pytest.approx(RATE, rel=1e-6) and drag.imag == pytest.approx(0.2 * slow, rel=1e-4)
 
 
-@pytest.mark.parametrize("precision", ["f64", "f32"])
+@pytest.mark.parametrize("precision", ["f64", pytest.param("f32", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("thin", [1.0, 0.01])
 def test_a_tank_that_sways_takes_a_free_drop_along(thin, precision):
     """By tanh z/z, at b²ω/ν = 31 and 3100, where the drag is three times and a third of 12 ν u/b² and late."""
@@ -71,6 +71,7 @@ def test_a_tank_that_sways_takes_a_free_drop_along(thin, precision):
     np.testing.assert_allclose(fit[0] - 1j * fit[1] + speed, wanted, atol=0.04 * abs(wanted))  # seen from the tank
 
 
+@pytest.mark.slow
 def test_a_free_drop_is_stopped_as_flow_between_walls_is():
     """All of it alike, so that nothing else acts; the walls have its momentum, and viscosity its energy."""
     velocity = np.array([0.6, -0.2])
@@ -98,6 +99,7 @@ def test_a_free_drop_is_stopped_as_flow_between_walls_is():
     run.close()
 
 
+@pytest.mark.slow
 def test_a_rolling_tank_works_on_water_that_its_walls_hold_back():
     """Energy changes by the work of the walls, friction of those before and behind included."""
     scene = still(0.6, 0.6, 0.2, 8, motions=[(Roll(0.2, 0.8, centre=(0.1, 0.2)),)], soft_start=0.1, **NARROW)

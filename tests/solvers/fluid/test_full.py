@@ -38,6 +38,7 @@ def run() -> Iterator[Simulation]:
     run.close()
 
 
+@pytest.mark.slow
 def test_gauges_do_not_show_the_background(run):
     run.observe()
     run.advance(1)

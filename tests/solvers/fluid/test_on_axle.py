@@ -50,6 +50,7 @@ def turning(run: Simulation) -> tuple[float, float]:
     return THICK * float(m @ ((y - y0) * w - (z - z0) * v)), run.carrier.axles[0].inertia * rate
 
 
+@pytest.mark.slow
 def test_water_and_tank_keep_their_angular_momentum(run):
     """Without gravity that of both together about the axle, to rounding, as water hits the walls."""
     axle = Axle((0.05, 0.3), 0.1, 0.0)

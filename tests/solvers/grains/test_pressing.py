@@ -58,9 +58,8 @@ def test_discs_bear_their_weights_with_any_lists(schedule, units):
     made.close()
 
 
-@pytest.mark.parametrize(  # nodes never let a bed rest
-    "contact", ["continuous", pytest.param("area", marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", ["continuous", "area"])  # nodes never let a bed rest
 def test_irregular_grains_bear_their_weights_and_observing_changes_nothing(contact):
     made = bed(outlines(contact))
     before = made.state()

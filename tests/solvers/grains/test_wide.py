@@ -112,6 +112,7 @@ def afloat(handover):
     return [Vessel(ship, (0.0, 0.02), handover=handover)] * 2
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not wide.registers(), reason="kernels are on real vectors where there is AVX2 or AVX-512 only")
 def test_real_vectors_bear_a_ship_in_mixed_precision():
     run = throw(8, tangential="mindlin", precision="mixed", vessels=afloat(None))

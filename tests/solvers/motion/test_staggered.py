@@ -39,6 +39,7 @@ def test_steps_of_10_and_5_ms_roll_the_same():
         assert np.abs(found - exact).max() < 3e-4 * np.abs(exact).max()
 
 
+@pytest.mark.slow
 def test_an_extrapolated_load_drives_a_light_ship_as_predicted():
     """A ship that heaves with rigid contents diverges by the factor of `growth` from each of her steps to the next."""
     vessel, handover = ship(release=0.05, heel=0.02, handover=0.005), 0.005

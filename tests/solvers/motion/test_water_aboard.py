@@ -71,6 +71,7 @@ def roll(scene, lasts: float) -> tuple[np.ndarray, np.ndarray]:
     return time, pose[:, 2]
 
 
+@pytest.mark.slow
 def test_frozen_water_is_a_rigid_weight():
     """She sways, heaves and rolls as with a body of the water's mass, centre and moment of inertia bolted to her."""
     scene = aboard(ship(), "frozen", step=1e-3)  # she is let go at a whole number of steps

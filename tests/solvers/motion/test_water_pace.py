@@ -24,6 +24,7 @@ def run():
     made.close()
 
 
+@pytest.mark.slow
 def test_what_the_water_loses_the_ship_gains_in_its_own_steps(run):
     """The mean load of the ship's few steps is the momentum that the water loses in its one, to rounding."""
     run.advance(PACE * round(0.5 / run.dt / PACE))

@@ -80,6 +80,7 @@ def test_restoring_is_the_slope_of_the_energy():
         assert found[1:] == pytest.approx(slope, abs=1e-5 * LADEN.mass * WATER.gravity)
 
 
+@pytest.mark.slow
 def test_she_keeps_her_energy_as_she_rolls_far():
     ship = Ship(
         Body(LADEN.mass, LADEN.centre, LADEN.mass * 0.1**2),

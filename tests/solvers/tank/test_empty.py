@@ -39,7 +39,10 @@ def in_waves(hull=BARGE) -> Vessel:
     return Vessel(Ship(BODY, load, DAMPED, AXIS, RollDamping(0.2, 0.3)), HOLD, laden=True)
 
 
-@pytest.mark.parametrize("hull", [BARGE, tapered(0.25, 0.30, 9)], ids=["section", "stations"])
+@pytest.mark.parametrize(
+    "hull",
+    [pytest.param(BARGE, id="section", marks=pytest.mark.slow), pytest.param(tapered(0.25, 0.30, 9), id="stations")],
+)
 def test_an_empty_hold_moves_as_the_rigid_body_in_waves(hull):
     """Sway, heave and roll of the method of Runge and Kutta alone, to rounding."""
     vessel = in_waves(hull)

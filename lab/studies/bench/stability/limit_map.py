@@ -27,6 +27,7 @@ DISTURBED = 1e-6  # of that speed
 GROWTH, STEPS, LOOKS = 1e4, 2000, 10
 RESTITUTIONS = {"undamped": 1.0, "e = 0.5": 0.5, "e = 0.05": 0.05}
 DAMPINGS = tuple(RESTITUTIONS)
+SOFT = 1e-2  # of the stiffness
 STUCK = 100.0  # a friction coefficient that no disturbance overcomes
 COARSE, FINE = 1.5, 1.01  # ratios of steps: of the search for a bracket, and of the bracket at its end
 WIDEST = 100.0  # derived steps, up and down
@@ -38,7 +39,8 @@ CONSERVATIVE = ("verlet", "symplectic-euler")  # whose limit on an oscillator is
 class Limit:
     """The longest stable step (s) of an integrator under two laws with a damping, beside the derived one.
 
-    `forced` is the longest (s) that a user may force; `exact` is 2/ω (s) where that is known, else None.
+    `forced` is the longest (s) that a user may force, as with softer grains, for which Rayleigh waves set no bound;
+    in derived steps the limits are the same whatever the stiffness. `exact` is 2/ω (s) where that is known, else None.
     """
 
     integrator: str
@@ -72,12 +74,13 @@ def limits(integrator: str, normal: str, friction: str) -> Iterator[Limit]:
     for world, (damping, restitution) in enumerate(RESTITUTIONS.items()):
         if normal == "hertz" and world:  # it loses nothing whatever the restitution
             break
-        bounds = scene([restitution], integrator, normal, friction).step_limits()
-        derived = bounds[0].step
+        alone = scene([restitution], integrator, normal, friction)
+        derived, soft = alone.step_limits()[0].step, replace(alone, stiffness_scale=SOFT).step_limits()
         true = longest(lambda step, w=world: grows(run, places, w, step), derived)
         known = not world and friction == "none" and integrator in CONSERVATIVE
         exact = exact_limit(normal) if known else None
-        yield Limit(integrator, normal, friction, damping, derived, furthest(bounds), true, exact)
+        forced = derived * furthest(soft) / soft[0].step
+        yield Limit(integrator, normal, friction, damping, derived, forced, true, exact)
     run.close()
 
 
