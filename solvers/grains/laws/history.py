@@ -20,9 +20,7 @@ positions to higher order: with α = 1/2 the distance is then s_n + (Δt²/3) a_
 import taichi as ti
 
 M_T = 2.0 / 7.0  # of m_eff: effective mass against slip of spheres
-STIFFEST = (
-    0.1  # largest relative change of a spring; (ω Δt)²/12 reaches it only at steps far too long for valid results
-)
+STIFFEST = 0.1  # largest relative change of a spring: more only at steps far too long for valid results
 
 
 @ti.pyfunc
