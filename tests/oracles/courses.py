@@ -219,7 +219,7 @@ def hard(
 ) -> Course:
     """The course of a trial at the automatic step, which must be sound.
 
-    At the longest step that the lab admits the trial must end in a sentence of the watch, or
+    At the longest step that may be forced the trial must end in a sentence of the watch, or
     its measure be right within the share `within`, and no energy made beyond a ripple. In a chaotic case the measure is
     a mean over `starts` a nanometre apart, as a single course is as good as a draw.
     """
