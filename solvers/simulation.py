@@ -30,17 +30,16 @@ from solvers.time.sequence import Sequence
 from solvers.time.settling import settle
 
 LOOK_FOR_MIXING = 0.25  # s, between checks of whether the grains' numbers still follow their positions
-SKIN = 0.05  # of the mean diameter: the fastest of 0.05 … 0.3, in settled and in shaken beds
-SKIN_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 SHORTER = 0.9  # of the limit on the step at set-up: the lowest limit that `alter` accepts
 
 
 class Simulation:
     """W worlds of one scene, its grains, if any, at `position` (W, n, 2) m, at rest or with the scene's velocities.
 
-    `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; the `skin` (m) of the Verlet lists affects speed
-    only. `units` is the number of units per world, by default the schedule's choice. The scene's step is the base step;
-    while grains are slow, steps are up to `stretch` times as long, a power of two. Raises Unavailable.
+    `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; the `skin` (m) of the Verlet lists, by default wider
+    for faster grains, affects speed only. `units` is the number of units per world, by default the schedule's choice.
+    The scene's step is the base step; while grains are slow, steps are up to `stretch` times as long, a power of two.
+    Raises Unavailable.
     """
 
     def __init__(
@@ -62,11 +61,11 @@ class Simulation:
         count = moved(scene)
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
-        self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = max(stretch, scene.soft_stride) if alone else 1
         self.steps, self.room, self.vectors, self.among = 0, 1, wide.lanes(), worlds  # `among`: worlds at the start
+        self.skin = skin
         self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()

@@ -13,6 +13,7 @@ from lab.preset.units import show
 from lab.recording import Recording
 from lab.report.numbers import count_of
 from solvers.grains.laws import COHESION
+from solvers.grains.lists.skin import Skin
 from solvers.grains.shapes.given import Shapes
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -49,8 +50,13 @@ def laws(preset: Preset, simulation: Simulation) -> Rows:
         ("memory", f"{remembered} number(s) a contact"),
         ("integrator", scene.integrator),
         *_longer_steps(simulation),
-        ("skin", f"{show(simulation.skin, 'm')} of the neighbour lists"),
+        ("skin", f"{_skin(simulation.grains.lists.skin)} of the neighbour lists"),
     ]
+
+
+def _skin(skin: Skin) -> str:
+    least, most = skin.widths.least, skin.widths.most
+    return f"{show(least, 'm')} to {show(most, 'm')}, wide while grains are fast," if skin.adapts else show(least, "m")
 
 
 def _longer_steps(simulation: Simulation) -> Rows:

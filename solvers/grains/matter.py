@@ -12,6 +12,7 @@ from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws.chosen import ChosenLaws
 from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.lists.numbering import Numbering
+from solvers.grains.lists.skin import Skin, widths
 from solvers.grains.mover import Mover
 from solvers.grains.pressing import Presser, Pressing
 from solvers.grains.shapes.grains import ShapedGrains
@@ -81,7 +82,7 @@ class GrainMatter(Matter):
 
     def slack(self) -> float:
         """How far (m) two grains may near each other before the lists are no good."""
-        return float(self.lists.skin.to_numpy()[0])
+        return float(self.lists.skin.width.to_numpy()[0])
 
     def sort_all(self) -> None:
         """Sort the grains of all worlds into cells."""
@@ -270,17 +271,15 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     discs_alone = scene.shapes is None and not units.single and scene.water is None
     laws.wide = setting.vectors if laws.fit and discs_alone else 0
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
-    bridges = scene.longest_bridge
+    grains = Grains(arrays, *given) if scene.shapes is None else ShapedGrains(arrays, scene.shapes, *given)
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
-    reach = 2.0 * scene.farthest_reach + max(setting.skin, bridges) + early
-    lists = setting.skin, bridges, early, reach, laws, moduli, setting.room
+    skin = Skin(arrays, grains, widths(scene, setting.skin, units.single), scene.longest_bridge, early)
+    lists = scene.farthest_reach, skin, laws, moduli, setting.room
     if scene.shapes is None:
-        grains = Grains(arrays, *given)
         neighbours = Neighbours(arrays, units, grains, walls, *lists)
         contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
     else:
         rule = RULES[scene.shapes.contact](arrays, units, walls, scene.shapes)
-        grains = ShapedGrains(arrays, scene.shapes, *given)
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
     mover = Mover(arrays, units, grains, integrator, setting.carrier.rotating)

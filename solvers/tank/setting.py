@@ -15,9 +15,9 @@ class Setting:
     """The arrays of a simulation of W `worlds`, the walls of its tanks, their `pieces`, and their `carrier`.
 
     A world is cut into `bands`, or with `per_particle` into single particles. `shares` (W, pieces) are the factors with
-    which the carrier responds to the load on each piece (`Load`). Lists have a `skin` (m) and `room` times the usual
-    length, and what is usual of water is shared `among` so many worlds. Steps are up to `stretch` base steps long.
-    `vectors`: lanes of a block of pairs of grains on real vectors, 0 without these.
+    which the carrier responds to the load on each piece (`Load`). Lists of grains have the `skin` (m), if one is given.
+    All lists have `room` times the usual length, and what is usual of water is shared `among` so many worlds. Steps are
+    up to `stretch` base steps long. `vectors`: lanes of a block of pairs of grains on real vectors, 0 without these.
     """
 
     arrays: State
@@ -28,7 +28,7 @@ class Setting:
     pieces: int
     shares: np.ndarray | None
     carrier: object
-    skin: float
+    skin: float | None
     room: int = 1
     stretch: int = 1
     vectors: int = 0

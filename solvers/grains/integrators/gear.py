@@ -25,7 +25,7 @@ class Gear:
     Units: r and all q_k m or rad, r̈ m/s² or rad/s², Δt s, C_k pure numbers.
     """
 
-    extra, reach, damping = DERIVATIVES, 0.25, 0.15
+    extra, reach, damping, bearing = DERIVATIVES, 0.25, 0.15, 0.8
     ahead, stiffer, late = 0.5, 1.0 / 3.0, 0.0
 
     @ti.func

@@ -17,7 +17,7 @@ class SymplecticEuler:
     Units: r m, v m/s, a m/s², Δt s.
     """
 
-    extra, reach, damping = 0, 1.0, 1.0
+    extra, reach, damping, bearing = 0, 1.0, 1.0, 1.0
     ahead, stiffer, late = 0.0, -1.0 / 12.0, 0.0
 
     @ti.func

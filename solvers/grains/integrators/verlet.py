@@ -18,7 +18,7 @@ class Verlet:
     Units: r m, v m/s, a m/s², Δt s.
     """
 
-    extra, reach, damping = 0, 1.0, 1.0
+    extra, reach, damping, bearing = 0, 1.0, 1.0, 1.0
     ahead, stiffer, late = 0.5, -1.0 / 12.0, 0.5
 
     @ti.func

@@ -10,7 +10,7 @@ from solvers.grains.laws.kick import cut_at_zero, reached
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 
-BORNE = 1.6  # of the damper's derived step: longer ones are not stable in the most compressed packings
+BORNE = 2.0  # of the damper's derived step: longer ones are not stable in the most compressed packings
 LEAST = 1e-3  # x of a damper that limits nothing
 
 

@@ -20,11 +20,13 @@ ROOM, MORE = (8, 3), (512, 16)  # of pairs and wall features: per grain, and mor
 class Candidates:
     """For each grain i of a unit the grains j > i of the unit, and all others, that may come as near as is listed.
 
-    They hold while no grain has moved by half the `slack` (m) since they were `seen`, and are `known`, by world. In the
-    step in which they are renewed `renewed` is 1. Walls are left out where they move.
+    They are all that had gaps up to `farthest` (m) when they were `seen`, and `known`, by world. In the step in which
+    they are renewed `renewed` is 1. Walls are left out where they move.
     """
 
-    def __init__(self, arrays: State, units: Units, grains: Grains, walls: Walls, slack: float, room: int, across: int):
+    def __init__(
+        self, arrays: State, units: Units, grains: Grains, walls: Walls, farthest: float, room: int, across: int
+    ):
         self.units, self.grains, self.walls, self.walled = units, grains, walls, not walls.moving
         own, world = arrays.under("candidates"), Axis("world", grains.worlds)
         capacity, walled = (room * (each * units.size + more) for each, more in zip(ROOM, MORE, strict=True))
@@ -36,28 +38,28 @@ class Candidates:
         self.seen = own.reals((world, Axis("grain", grains.count)), *named("seen", grains.axes), kind=own.place)
         (self.known,) = own.integers((world,), "known")
         (self.renewed,) = own.integers((world,), "renewed", kept=False)
-        self.slack = own.holding("slack", np.array([slack]), "one")
+        self.farthest = own.holding("farthest", np.array([farthest]), "one")
 
     def forget(self) -> None:
         """Have them sought anew before the next lists."""
         self.known.fill(0)
 
     @ti.func
-    def outdated(self, w):
-        """Whether they must be sought anew: not known, or some grain has moved by half the slack."""
-        farthest = ti.cast(0.0, self.grains.real)
+    def outdated(self, w, margin):
+        """Whether a pair with a gap below `margin` (m) may be none of them: not known, or grains have moved too far."""
+        moved = ti.cast(0.0, self.grains.real)
         for i in range(self.grains.mobile):
             gone = [
                 ti.cast(self.grains.place[a][w, i] - self.seen[a][w, i], self.grains.real)
                 for a in ti.static(range(self.grains.axes))
             ]
-            farthest = ti.max(farthest, dot(gone, gone))
-        return self.known[w] == 0 or ti.sqrt(farthest) > 0.5 * self.slack[0]
+            moved = ti.max(moved, dot(gone, gone))
+        return self.known[w] == 0 or 2.0 * ti.sqrt(moved) + margin > self.farthest[0]
 
     @ti.func
-    def renew(self, w):
-        """Have the units of a world seek them anew if they are outdated; returns whether they are."""
-        self.renewed[w] = ti.cast(self.outdated(w), ti.i32)
+    def renew(self, w, margin):
+        """Have the units of a world seek them anew if they are outdated for a margin (m); returns whether they are."""
+        self.renewed[w] = ti.cast(self.outdated(w, margin), ti.i32)
         if self.renewed[w] == 1:
             self.known[w] = 1
             for i in range(self.grains.mobile):
@@ -66,18 +68,18 @@ class Candidates:
         return self.renewed[w] == 1
 
     @ti.func
-    def found(self, g: ti.template(), c: ti.template(), u, t, margin):
+    def found(self, g: ti.template(), c: ti.template(), u, t):
         """Seek those of a unit if they are to be renewed; False if there is no room for them."""
         fits, w = True, self.units.world(u)
         if self.renewed[w] == 1:
-            fits = self.seek(g, c, u, t, margin)
+            fits = self.seek(g, c, u, t)
             if not fits:
                 self.known[w] = 0
         return fits
 
     @ti.func
-    def seek(self, g: ti.template(), c: ti.template(), u, t, margin):
-        """Seek those of a unit among sorted grains, up to gaps (m) of `margin` and the slack; False without room.
+    def seek(self, g: ti.template(), c: ti.template(), u, t):
+        """Seek those of a unit among sorted grains; False without room.
 
         What a grain has near it comes at random: without branches the processor guesses nothing wrong.
         """
@@ -86,7 +88,7 @@ class Candidates:
         for i in range(start, end):
             self.first[u, i - start] = found
             place = [g.place[a][w, i] for a in ti.static(range(g.axes))]
-            reach = g.reach[w, i] + margin + self.slack[0]
+            reach = g.reach[w, i] + self.farthest[0]
             lower, upper = c.box(w, i)
             for n in range(c.rows(lower, upper)):
                 # Three adjacent cells of a row are one contiguous range of the sorted grains.
@@ -99,7 +101,7 @@ class Candidates:
                     found += self.mine(i, j, start, end) & ti.cast(dot(apart, apart) < far * far, ti.i32)
         for k in range(end - start, self.units.size + 1):
             self.first[u, k] = found
-        return found <= self.capacity and self.seek_walls(g, u, t, margin)
+        return found <= self.capacity and self.seek_walls(g, u, t)
 
     @ti.func
     def mine(self, i, j, start, end):
@@ -110,14 +112,14 @@ class Candidates:
         return found
 
     @ti.func
-    def seek_walls(self, g: ti.template(), u, t, margin):
+    def seek_walls(self, g: ti.template(), u, t):
         """Seek the walls that grains of a unit are beside; returns whether there is room."""
         w, start, end, found = self.units.world(u), self.units.first(u), self.units.end(u), 0
         if ti.static(self.walled):
             shift = self.walls.shift(w, t)
             for i in range(start, end):
                 self.wall_first[u, i - start] = found
-                reach = g.reach[w, i] + margin + self.slack[0]
+                reach = g.reach[w, i] + self.farthest[0]
                 for feature in range(self.walls.features):
                     if self.walls.near(feature, shift, g.place[0][w, i], g.place[1][w, i], reach):
                         self.feature[u, ti.min(found, self.wall_capacity - 1)] = feature

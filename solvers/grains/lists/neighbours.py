@@ -10,6 +10,7 @@ import taichi as ti
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.lists.candidates import Candidates
 from solvers.grains.lists.contact_list import ContactList
+from solvers.grains.lists.skin import Skin
 from solvers.grains.state import Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
@@ -21,7 +22,6 @@ LANES = 8  # pairs a pass of the force loop: two AVX2 registers of 64-bit number
 # Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more). A unit of a single
 # grain lists all of its neighbours (full list).
 ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
-SLACK = 6.0  # of candidates, in skins
 NEVER = 1e30  # m, a displacement that makes the lists stale
 
 
@@ -29,9 +29,7 @@ NEVER = 1e30  # m, a displacement that makes the lists stale
 class Neighbours:
     """The two contact lists of every unit, and when they are rebuilt.
 
-    Pairs are listed that may touch before the next rebuild, when a grain has moved by half the `skin` (m), or that may
-    have a liquid bridge, of at most `bridges` (m); and those `early` (m) before, since a force begins in the kick in
-    which two grains touch.
+    Pairs are listed that may touch before the next rebuild, when a grain has moved by half the `skin`.
     """
 
     lanes = LANES
@@ -43,16 +41,14 @@ class Neighbours:
         units: Units,
         grains: Grains,
         walls: Walls,
-        skin: float,
-        bridges: float,
-        early: float,
         reach: float,
+        skin: Skin,
         laws: ChosenLaws,
         modulus: np.ndarray,
         room: int,
         rule=None,
     ):
-        self.units, self.grains, self.walls, self.laws = units, grains, walls, laws
+        self.units, self.grains, self.walls, self.skin, self.laws = units, grains, walls, skin, laws
         (pairs, more_pairs), (contacts, more_contacts) = ROOM[units.single]
         across = 0 if units.whole or units.single else 8 * int(np.sqrt(units.mobile))  # pairs with other units
         lanes = 1 if units.single else laws.wide or self.lanes
@@ -68,14 +64,10 @@ class Neighbours:
         )
         own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
         self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
-        self.skin = own.holding("skin", np.array([skin]), "one")
-        # The gap (m) up to which pairs are listed.
-        self.margin = own.holding("margin", np.array([max(skin, bridges) + early]), "one")
         self.walled = not units.single and not walls.moving  # whether candidates know the walls
         if not units.single:
-            self.candidates = Candidates(arrays, units, grains, walls, SLACK * skin, room, across)
-            reach += SLACK * skin
-        self.cells = Cells(arrays, grains, *walls.bounds, reach)
+            self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across)
+        self.cells = Cells(arrays, grains, *walls.bounds, 2.0 * reach + skin.farthest)
         self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
         # `travel` (m) bounds the displacement of all grains since the lists were built, at the time `built_at` (s).
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
@@ -97,20 +89,21 @@ class Neighbours:
     def sort(self, w):
         """Sort a world's grains into cells, where candidates must be sought anew before its lists are rebuilt."""
         anew = True
+        self.skin.adapt(w)
         if ti.static(not self.units.single):
-            anew = self.candidates.renew(w)
+            anew = self.candidates.renew(w, self.skin.margin(w))
         if anew:
             self.cells.sort_world(w)
 
     @ti.func
     def worn(self, u):
         """Whether a grain may have moved by more than half the skin, so that an unlisted pair may touch."""
-        return self.travel[u] > 0.5 * self.skin[0]
+        return self.travel[u] > 0.5 * self.skin.width[self.units.world(u)]
 
     @ti.func
     def stale(self, u, t):
         """Whether a unit's lists must be rebuilt at time t (s); if only the bound was too large, it is updated."""
-        old, skin = False, self.skin[0]
+        old, skin = False, self.skin.width[self.units.world(u)]
         if self.worn(u):
             old = True
             if self.travel[u] < 0.5 * NEVER:
@@ -174,7 +167,7 @@ class Neighbours:
     def near(self, g: ti.template(), w, i, j):
         """Whether two grains are near enough to be listed."""
         apart = [g.place[a][w, i] - g.place[a][w, j] for a in ti.static(range(g.axes))]
-        far = g.reach[w, i] + self.margin[0] + g.reach[w, j]
+        far = g.reach[w, i] + self.skin.margin(w) + g.reach[w, j]
         return dot(apart, apart) < far * far
 
     @ti.func
@@ -206,7 +199,7 @@ class Neighbours:
         shift = self.walls.shift(w, t)
         for i in range(start, end):
             self.contacts.first[u, i - start] = found
-            reach, begin, last = self.grains.reach[w, i] + self.margin[0], 0, self.walls.features
+            reach, begin, last = self.grains.reach[w, i] + self.skin.margin(w), 0, self.walls.features
             if ti.static(self.walled):
                 begin, last = self.candidates.wall_first[u, i - start], self.candidates.wall_first[u, i - start + 1]
             for k in range(begin, last):
@@ -268,7 +261,7 @@ class Neighbours:
         """Rebuild both neighbour lists; returns False, with the old lists in place, if they do not fit."""
         w, known = self.units.world(u), True
         if ti.static(not self.units.single):
-            known = self.candidates.found(self.grains, self.cells, u, t, self.margin[0])
+            known = self.candidates.found(self.grains, self.cells, u, t)
         self.pairs.set_aside(u)
         self.contacts.set_aside(u)
         pairs, contacts = 0, 0

@@ -102,7 +102,7 @@ def check_stiffness(run: Simulation, w: int, pairs: np.ndarray, walls: np.ndarra
         np.testing.assert_allclose(found, 4.0 / 3.0 * between.young_modulus / np.sqrt(bend), rtol=1e-12)
 
 
-def shaken(skin: float, room: int = 1) -> Simulation:
+def shaken(skin: float | None, room: int = 1) -> Simulation:
     """Soft unequal grains with Mindlin friction, which remembers: in world 0 a loose stack that falls into a heap under
     a strong sway, in world 1 a gas of fast grains."""
     rng = np.random.default_rng(5)
@@ -168,21 +168,28 @@ def brute_census(position: np.ndarray, radius: np.ndarray) -> int:
     return int((gap < 0.0).sum() + (walls < radius).sum())
 
 
-@pytest.fixture(scope="module")
-def usual():
-    """The shaken grains every 0.5 ms with a wide skin and room for all: positions (T, 2, n, 2), contacts counted by the
-    lists and by brute force (T, 2), and the end."""
-    run = shaken(WIDE_SKIN, room=2)
-    positions, counted, expected = [], [], []
+def watched(run: Simulation) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A run every 0.5 ms: positions (T, 2, n, 2), contacts by the lists and by brute force, and skins, (T, 2)."""
+    positions, counted, expected, skins = [], [], [], []
     for _ in range(LOOKS):
         run.advance(round(5e-4 / run.dt))
-        state, rows = run.snapshot(), run.observe()
-        positions.append(state["position"])
-        counted.append(rows["contacts"])
-        expected.append([brute_census(state["position"][w], run.scene.radius[w]) for w in range(2)])
+        position = run.snapshot()["position"]
+        positions.append(position)
+        counted.append(run.observe()["contacts"])
+        expected.append([brute_census(position[w], run.scene.radius[w]) for w in range(2)])
+        skins.append(run.grains.lists.skin.width.to_numpy())
+    return np.array(positions), np.array(counted), np.array(expected), np.array(skins)
+
+
+@pytest.fixture(scope="module")
+def usual():
+    """The shaken grains with a wide skin and room for all: what is `watched`, and the end."""
+    run = shaken(WIDE_SKIN, room=2)
+    positions, counted, expected, _ = watched(run)
     assert run.room == 2
+    end = run.snapshot() | run.observe()
     run.close()
-    return np.array(positions), np.array(counted), np.array(expected), state | rows
+    return positions, counted, expected, end
 
 
 def test_no_contact_is_missed(usual):
@@ -190,6 +197,18 @@ def test_no_contact_is_missed(usual):
     _, counted, expected, _ = usual
     assert np.all(expected.max(axis=0) > [30, 8])  # many enough to miss one
     np.testing.assert_array_equal(counted, expected)
+
+
+def test_the_skin_follows_the_speed_and_no_contact_is_missed(usual):
+    """Lists of the gas have wide skins and seldom expire, those of the stack thin ones; both move as with any skin."""
+    run = shaken(None, room=2)
+    positions, counted, expected, skins = watched(run)
+    run.close()
+    diameter = 2.0 * run.scene.mean_radius
+    np.testing.assert_array_equal(counted, expected)
+    assert np.all(skins[:, 1] > 1.5 * skins[0, 0])
+    assert np.all((skins >= 0.05 * diameter) & (skins <= 0.3 * diameter))
+    assert np.abs(positions[:60] - usual[0][:60]).max() < 1e-6 * RADIUS
 
 
 def test_history_survives_rebuilds(usual):

@@ -25,11 +25,11 @@ class ShapedNeighbours(Neighbours):
     a pair compute identical results.
     """
 
-    def __init__(self, arrays, units, grains, walls, skin, bridges, early, reach, laws, modulus, room, rule):
+    def __init__(self, arrays, units, grains, walls, reach, skin, laws, modulus, room, rule):
         self.lanes, self.pair_fleeting = rule.rest.lanes, rule.rest.memory
         self.places = min(rule.most, BENT_PLACES * room)
         room *= (BENT_PLACES if rule.bent else 1) * ceil(grains.crowding - 0.01)
-        super().__init__(arrays, units, grains, walls, skin, bridges, early, reach, laws, modulus, room, rule)
+        super().__init__(arrays, units, grains, walls, reach, skin, laws, modulus, room, rule)
         self.rule = rule
         if rule.most > 1:
             self.support = Support(arrays, rule.outlines)
@@ -81,7 +81,7 @@ class ShapedNeighbours(Neighbours):
         for p in range(self.contacts.length[u]):
             if self.contacts.wanted[u, p][0] > 0.0:
                 i, feature = self.contacts.first_of(u, p), self.contacts.second_of(u, p)
-                count = self.rule.seek_wall(g, w, i, feature, shift, self.margin[0], u)
+                count = self.rule.seek_wall(g, w, i, feature, shift, self.skin.margin(w), u)
                 fits = self.replace(self.contacts, u, p, i, feature, count, whole) and fits
         self.asking[u] = 0
         if not fits:
@@ -99,9 +99,9 @@ class ShapedNeighbours(Neighbours):
         """Have the rule find the contacts of two grains; returns their number."""
         count, near = 0, True
         if ti.static(self.rule.most > 1):
-            near = self.support.gap(g, w, i, j) < self.margin[0]
+            near = self.support.gap(g, w, i, j) < self.skin.margin(w)
         if near:
-            count = self.rule.seek_pair(g, w, i, j, self.margin[0], u)
+            count = self.rule.seek_pair(g, w, i, j, self.skin.margin(w), u)
         return count
 
     @ti.func

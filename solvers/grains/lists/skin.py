@@ -1,0 +1,78 @@
+"""The skin of Verlet lists: how far apart pairs are listed that do not touch yet.
+
+A wide skin lists more pairs, a thin one must be built more often. The cost of a step, with p for the share by which it
+grows with the skin s (in diameters d) and b for building lists in units of a step, is 1 + p s + 2 b v Δt/(s d), since
+lists hold until the fastest grain has gone by s d/2 at its speed v. So the best skin goes with √(v Δt/d) (Chialvo &
+Debenedetti 1990, Comput. Phys. Commun. 60, 215, have such a balance for molecules).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.state import Grains
+from solvers.machine.state import State
+from solvers.space.axes import dot
+
+# In mean diameters
+LEAST, MOST, FARTHEST = 0.05, 0.3, 0.6
+KEEN = 3.0
+LEAST_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
+LISTS = 7.0  # skins, where all are alike, up to which candidates are sought
+
+
+@dataclass(frozen=True)
+class Widths:
+    """Skins (m) from `least` to `most`: √(`per_speed` (m s) times the speed of the fastest grain) in between.
+
+    Candidates are sought up to gaps of `farthest` (m).
+    """
+
+    least: float
+    most: float
+    farthest: float
+    per_speed: float = 0.0
+
+
+def widths(scene, skin: float | None, single: bool) -> Widths:
+    """The skins of a scene, or only the one that is asked for (m); units of a `single` grain have no candidates."""
+    diameter = 2.0 * scene.mean_radius
+    if scene.shapes or single or skin:
+        least = skin or (LEAST_OF_CONVEX if scene.shapes and scene.shapes.convex else LEAST) * diameter
+        return Widths(least, least, least if single else LISTS * least)
+    return Widths(LEAST * diameter, MOST * diameter, FARTHEST * diameter, KEEN**2 * diameter * scene.time_step())
+
+
+@ti.data_oriented
+class Skin:
+    """The present skin `width` (W,) m of each world, and the gap up to which its pairs are listed.
+
+    Pairs with a liquid bridge, of at most `bridges` (m), are listed however thin the skin; and all `early` (m) before,
+    since a force begins in the kick in which two grains touch.
+    """
+
+    def __init__(self, arrays: State, grains: Grains, widths: Widths, bridges: float, early: float):
+        self.grains, self.widths, self.adapts = grains, widths, widths.most > widths.least
+        beyond = widths.farthest - widths.most  # candidates serve several lists
+        self.farthest = max(widths.farthest, bridges + beyond) + early
+        own = arrays.under("lists")
+        self.width = own.holding("skin", np.full(grains.worlds, widths.least), "world", kept=True)
+        bounds = [widths.least, widths.most, widths.per_speed, bridges, early]
+        self.bounds = own.holding("skins", np.array(bounds), "number")
+
+    @ti.func
+    def margin(self, w):
+        """The gap (m) up to which pairs of a world are listed."""
+        return ti.max(self.width[w], self.bounds[3]) + self.bounds[4]
+
+    @ti.func
+    def adapt(self, w):
+        """Choose the skin of the lists to come by how fast the grains of a world are now."""
+        if ti.static(self.adapts):
+            fastest = ti.cast(0.0, self.grains.real)
+            for i in range(self.grains.mobile):
+                v = [field[w, i] for field in ti.static(self.grains.velocity)]
+                fastest = ti.max(fastest, dot(v, v))
+            wanted = ti.sqrt(self.bounds[2] * ti.sqrt(fastest))
+            self.width[w] = ti.max(self.bounds[0], ti.min(self.bounds[1], wanted))
