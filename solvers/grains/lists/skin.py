@@ -2,8 +2,8 @@
 
 A wide skin lists more pairs, a thin one must be built more often. The cost of a step, with p for the share by which it
 grows with the skin s (in diameters d) and b for building lists in units of a step, is 1 + p s + 2 b v Δt/(s d), since
-lists hold until the fastest grain has gone by s d/2 at its speed v. So the best skin goes with √(v Δt/d) (Chialvo &
-Debenedetti 1990, Comput. Phys. Commun. 60, 215, have such a balance for molecules).
+lists hold until the fastest grain has gone by s d/2 at its speed v. So the best is s = √(2 b/p) √(v Δt/d). (Chialvo &
+Debenedetti 1990, Comput. Phys. Commun. 60, 215, seek the best skin for molecules.)
 """
 
 from dataclasses import dataclass
@@ -15,9 +15,8 @@ from solvers.grains.state import Grains
 from solvers.machine.state import State
 from solvers.space.axes import dot
 
-# In mean diameters
-LEAST, MOST, FARTHEST = 0.05, 0.3, 0.6
-KEEN = 3.0
+LEAST, MOST, FARTHEST = 0.05, 0.3, 0.6  # mean diameters
+KEEN = 2.0  # √(2 b/p): measured, a list costs some three steps, and a skin of d lengthens a step by 1.5
 LEAST_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 LISTS = 7.0  # skins, where all are alike, up to which candidates are sought
 
