@@ -15,7 +15,7 @@ from solvers.grains.state import Grains
 from solvers.machine.state import State
 from solvers.space.axes import dot
 
-LEAST, MOST, FARTHEST = 0.05, 0.3, 0.6  # mean diameters
+LEAST, MOST, FARTHEST = 0.05, 0.3, 0.8  # mean diameters
 KEEN = 2.0  # √(2 b/p): measured, a list costs some three steps, and a skin of d lengthens a step by 1.5
 LEAST_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 LISTS = 7.0  # skins, where all are alike, up to which candidates are sought

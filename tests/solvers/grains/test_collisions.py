@@ -208,6 +208,25 @@ def test_energy_never_increases_and_momentum_is_kept(bench):
     assert np.all(np.abs(momenta(bench) - before)[:, free] < [[1e-12], [1e-12], [1e-9]] * scale)
 
 
+def test_eight_steps_a_collision_leave_the_mean_restitution():
+    """Right to 0.3 % in the mean over 48 moments of onset: a damper is made up for what the predicted rate lags."""
+    restitutions, moments = np.repeat([0.6, 0.7, 0.9], 48), np.tile(np.arange(48) / 48, 3)
+    grain, position = [material(restitution=e) for e in restitutions], np.tile([PLACE, 1.5 * PLACE], (144, 1, 1))
+    _, duration, _ = expected("hertz", 1.0, False, 1.0, 1.0)
+    scene = {"gravity": 0.0, "step": duration / 8.0, "start_speed": 1.0}
+    run = simulation(position, np.full((144, 1), RADIUS), OUTLINE, grain, **scene)
+    position[:, 0] = PLACE + np.array([0.0, 2.0 * RADIUS])
+    position[:, 0, 1] += (moments + 0.5) * run.dt
+    position[:, 1] = PLACE
+    run.place(position, np.tile([[0.0, -1.0], [0.0, 0.0]], (144, 1, 1)))
+    run.advance(20)
+    velocity = run.snapshot()["velocity"][:, :, 1]
+    run.close()
+    errors = ((velocity[:, 0] - velocity[:, 1]) / restitutions - 1.0).reshape(3, 48)
+    assert np.abs(errors.mean(axis=1)).max() < 3e-3
+    assert np.abs(errors).max() < 1e-2
+
+
 @pytest.mark.slow
 def test_momentum_is_exact_without_walls():
     """Many grains at once, of many sizes, with every kind of memory."""

@@ -26,7 +26,8 @@ LONGEST = "the lab, longest step"  # that may be forced, not only derived
 SAME = "the lab's at standard"  # what all codes' steps are set by where they are equal
 LEVEL_OF = {0.01: "draft", 0.001: "standard"}  # error of the restitution, the largest over the moments of onset
 SPEED, PAIRS = 0.3, 24  # m/s; meeting pairs, each beginning 1/PAIRS of a step later than the one before
-STEPS = 8, 10, 12, 15, 19, 24, 30, 38, 48, 60, 75, 95, 120, 150, 190, 240, 300, 380, 480  # a collision, of those tried
+# A collision, of those tried: each at most a fifteenth more than the one before, or one more
+STEPS = tuple(dict.fromkeys(round(6.0 * 1.066**k) for k in range(69)))
 FINEST = 3000
 GRAINS = replace(ACETATE, restitution_speed=SPEED)
 SOFT = replace(GRAINS, young=GRAINS.young * SCALE)  # as a peer is told the material
