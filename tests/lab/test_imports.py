@@ -5,6 +5,8 @@ import sys
 from ast import literal_eval
 from pathlib import Path
 
+import pytest
+
 SLOW = ("scipy", "matplotlib", "PIL", "imageio_ffmpeg", "xarray", "jinja2", "pint")
 CALLED = """
 from lab.cli import main
@@ -40,15 +42,20 @@ def test_a_run_begins_without_imports_that_only_its_figures_need():
     assert loaded_by("from lab.runs.runner import run_preset") == []
 
 
+@pytest.fixture(scope="module")
+def explained() -> str:
+    """What explains a preset, after it was explained once."""
+    code = CALLED.format(words=["explain", "tilting/quick"])
+    loaded_by(code)
+    return code
+
+
+@pytest.mark.usefixtures("explained")
 def test_the_first_message_of_a_run_waits_for_no_slow_imports_once_its_collisions_are_known(tmp_path):
-    begun = BEGUN.format(out=str(tmp_path / "quick"))
-    loaded_by(begun)
-    assert loaded_by(begun) == []
+    assert loaded_by(BEGUN.format(out=str(tmp_path / "quick"))) == []
 
 
-def test_a_preset_is_explained_without_slow_imports_once_its_collisions_are_known():
-    explained = CALLED.format(words=["explain", "tilting/quick"])
-    loaded_by(explained)
+def test_a_preset_is_explained_without_slow_imports_once_its_collisions_are_known(explained):
     assert loaded_by(explained) == []
 
 

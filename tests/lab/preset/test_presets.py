@@ -27,6 +27,8 @@ from solvers.motion import MOTIONS, Tilt
 from tests.oracles.presets import MATERIAL, error_of
 
 NAMES = names()
+# Quick variants say little that those have not that they are variants of.
+OF_THEIR_OWN = [pytest.param(name, marks=pytest.mark.slow) if name.endswith(QUICK) else name for name in NAMES]
 as_shipped = cache(load)  # a preset of the lab without changes, read once
 MINIMAL = f"""
 title = "a tank"
@@ -74,7 +76,7 @@ def on_its_own(preset: Preset) -> Preset:
     return replace(preset, based_on="")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", OF_THEIR_OWN)
 def test_given_text_is_the_same_preset(name, tmp_path):
     changes = {"grains.spread": "5 %", "material.dissipative_time": "1e-6 s"}
     preset = load(name, {"run.seed": 5, **(changes if as_shipped(name).resolved.grains else {})})
@@ -117,7 +119,7 @@ def cost(preset: Preset) -> float:
     return preset.run.repeats * preset.duration / build(one)[0].step
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", OF_THEIR_OWN)
 def test_resolved_goes_to_json_and_back(name):
     """And a recording may have it: it is within the limits of what a file from an unknown source may say."""
     resolved = as_shipped(name).resolved

@@ -22,7 +22,7 @@ from tests.oracles.synthetic import DEPTH, DIAMETER, WIDTH, box, frame, preset, 
 TILT = preset(tilt={"rate": 0.07, "angle": 0.7})
 SWAY = preset(sway={"amplitude": 0.04, "frequency": 1.0})
 SLOW = pytest.mark.slow
-FEW = [(TILT, 2), pytest.param(TILT, 9, marks=SLOW), pytest.param(SWAY, 2, marks=SLOW), (SWAY, 9)]
+FEW = [(TILT, 2), *(pytest.param(*few, marks=SLOW) for few in ((TILT, 9), (SWAY, 2), (SWAY, 9)))]
 
 
 def bed(count=600):

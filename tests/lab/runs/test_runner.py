@@ -13,6 +13,7 @@ from lab.recording import open_recording
 from lab.report.explain import explain
 from lab.runs.batch import prepare
 from lab.runs.runner import run_preset
+from lab.sweeps.dry_run import available_measures
 from solvers.machine.errors import BadState
 from solvers.machine.runtime import available_cores
 
@@ -103,6 +104,12 @@ def test_a_run_reports_its_number_of_threads(run, company, threads, tmp_path):
     assert ready.device(company)["threads"] == threads
 
 
+def test_a_run_has_the_measures_of_its_dry_run(result):
+    """Those of other motions are in `tests/lab/sweeps/test_dry_run.py`, those of water in `test_water_runs.py`."""
+    expected = available_measures(load("tilting/quick", SMALL))
+    assert {name: m.unit for name, m in expected.items()} == {name: m.unit for name, m in result.measures.items()}
+
+
 def test_the_recording_names_the_device(result):
     assert result.recording.machine["threads"] == 1
     assert ", on 1 of " in (result.folder / "summary.md").read_text()
@@ -135,6 +142,7 @@ def test_the_summary_reports_a_forced_step(tmp_path):
     assert "The step is forced past the derived one" in (folder / "summary.md").read_text()
 
 
+@pytest.mark.slow  # a point of a sweep that is stopped is in `tests/lab/sweeps/test_sweep.py`
 def test_a_run_stopped_by_the_watch_keeps_its_recording_and_the_reason(tmp_path):
     thrown = {"tilt": False, "sway": {"amplitude": "4 mm", "frequency": "600 Hz"}}
     changes = {"tank": {"width": "24 mm", "height": "24 mm"}, "grains": {"count": 16}, "motion": thrown}
@@ -167,7 +175,8 @@ def test_the_summary_reports_a_bed_that_has_not_settled(tmp_path):
 SHIP = {"draught": "60 mm", "gravity_height": "35 mm", "breadth": "120 mm", "height": "100 mm", "gyradius": "40 mm"}
 
 
-@pytest.mark.parametrize("ship", [pytest.param({}, marks=pytest.mark.slow), SHIP], ids=["fixed", "afloat"])
+@pytest.mark.slow  # what is seen before the first step is in `tests/solvers/grains/test_unmoved.py`
+@pytest.mark.parametrize("ship", [{}, SHIP], ids=["fixed", "afloat"])
 def test_the_first_sample_is_the_state_of_grains_that_do_not_settle(tmp_path, ship):
     """Two grains of a file that move: one 2 µm deep in the floor, along which it slides, the other in flight."""
     (tmp_path / "bed.csv").write_text("y,z,radius,vy,vz,omega\n0,0.002998,0.003,0.05,0,5\n0.01,0.02,0.003,0,-0.1,0\n")

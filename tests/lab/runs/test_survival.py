@@ -29,7 +29,7 @@ format = 3
 title = "An empty tank"
 tank = { width = "0.3 m", height = "0.2 m", lid = false }
 motion.sway = { amplitude = "10 mm", frequency = "1 Hz" }
-run = { duration = "5 s", repeats = 2, threads = 1 }
+run = { duration = "1 s", repeats = 2, threads = 1 }
 record.checkpoint_every = "0 s"
 """
 BATCHES = f"""

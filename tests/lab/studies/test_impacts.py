@@ -10,7 +10,7 @@ from solvers.grains.restitution import damping_ratio_for
 
 RADIUS, SPEED, FRICTION = 1.5e-3, 1.0, 0.25
 SLIPS = FRICTION * np.array([0.5, 1.5, 2.5, 3.5, 5.0, 8.0])  # m/s along the wall
-PHASES = (0.1, 0.35, 0.6, 0.85)  # of a step, when contact begins
+PHASES = (np.arange(16) + 0.5) / 16.0  # of a step, when contact begins
 MASS = sphere_mass(RADIUS, ACETATE["density"])
 HERTZ = hertz_stiffness(ACETATE["young"], ACETATE["poisson"], RADIUS)
 SPRING = 0.8 * HERTZ * (1.25 * MASS * SPEED**2 / HERTZ) ** 0.2  # as deep as Hertz's contact at this speed
@@ -60,14 +60,17 @@ def in_the_solver(normal: str, tangential: str, e: float, integrator: str, parts
         pytest.param("hertz-viscoelastic", "mindlin", "gear", marks=pytest.mark.slow),
     ],
 )
-@pytest.mark.parametrize("e", [1.0, 0.6, pytest.param(0.1, marks=pytest.mark.slow)])
+# Impacts without loss are in `tests/solvers/grains/test_spring_history.py`, too.
+@pytest.mark.parametrize("e", [0.6, *(pytest.param(e, marks=pytest.mark.slow) for e in (1.0, 0.1))])
 def test_slip_after_an_impact_is_that_of_the_law(normal, tangential, integrator, e):
-    """Within 1 % of the slip before, sticking and sliding, wherever in a step it begins, and far less at a quarter.
+    """Within 1 % of the slip before, root mean square over the moments in a step at which contact begins, sticking and
+    sliding; by 1.5 % at the worst moment; and far less at a quarter.
 
     A linear dashpot's force jumps where grains touch, and friction's cap with it: that step errs as Δt.
     """
     expected = by_itself(normal, tangential, e)
     error = np.abs(in_the_solver(normal, tangential, e, integrator, (1, 4)) - expected) / SLIPS
-    assert error[0].max() < 1e-2
+    assert np.sqrt((error[0] ** 2).mean(axis=0)).max() < 1e-2
+    assert error[0].max() < 1.5e-2
     falls = 2.0 if normal == "linear" and e < 1.0 else 6.0
     assert error[1].max() < max(1e-4, error[0].max() / falls)

@@ -149,6 +149,7 @@ def test_a_strained_drop_passes():
     assert found.lines and all(line.passed for line in found.lines)
 
 
+@pytest.mark.slow  # a drop falls in `tests/solvers/fluid/test_step.py`, and one keeps its momentum in `test_motion.py`
 def test_a_drop_that_falls_gains_momentum_as_its_weight_says():
     """The cheapest case that runs water; the others are run by `test_fast_cases_pass_and_leave_a_page`."""
     assert balance.free_drop(balance.G).passed

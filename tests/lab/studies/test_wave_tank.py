@@ -79,7 +79,7 @@ def test_water_in_a_tank_that_sways_a_little_is_that_of_linear_theory():
     def curve(time, order):
         return size * np.real((1j * omega) ** order * np.exp(1j * omega * time))
 
-    times, rises = WaveTank(DEPTH, length, 60, swayed=True).rises(curve, 4.0, np.array([0.05]))
+    times, rises = WaveTank(DEPTH, length, 60, swayed=True).rises(curve, 2.5, np.array([0.05]))
     push = 4.0 / (length * number) * np.tanh(number * DEPTH) * -size * omega**2
     swings = push / (natural**2 - omega**2) * (np.cos(omega * times[:, None]) - np.cos(natural * times[:, None]))
     linear = swings @ np.cos(number * 0.05)

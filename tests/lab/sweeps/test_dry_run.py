@@ -23,10 +23,8 @@ RUNS = {
 }
 
 
-SLOW = ("there and back", "open")
-
-
-@pytest.mark.parametrize("case", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in RUNS])
+@pytest.mark.slow  # of a tilt it is in `tests/lab/runs/test_runner.py`
+@pytest.mark.parametrize("case", RUNS)
 def test_a_run_has_the_measures_of_its_dry_run(case, tmp_path):
     overrides = {**SMALL, **RUNS[case]}
     expected = available_measures(load("tilting/quick", overrides))

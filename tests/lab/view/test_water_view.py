@@ -84,7 +84,7 @@ def surface(session, picture):
     return -np.polyfit(np.arange(blue.shape[1]), highest, 1)[0]
 
 
-@pytest.mark.parametrize("tilt", [0.0, 0.2, -0.15])
+@pytest.mark.parametrize("tilt", [0.2, *(pytest.param(tilt, marks=pytest.mark.slow) for tilt in (0.0, -0.15))])
 @pytest.mark.parametrize("frame", ["tank", "earth"])
 def test_water_stays_level_as_the_tank_tilts(opened, frame, tilt):
     session, pipe, drops = opened

@@ -1,5 +1,7 @@
 """Friction of walls before and behind the plane: against its closed form, and where momentum and energy go."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,9 @@ from lab.preset.sections.water.liquid import liquid
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME
 from solvers.fluid.walls.between import RATES, SHARES, Between
 from solvers.motion.harmonic import Roll, Sway
+from solvers.scene import Scene
 from solvers.simulation import Simulation
-from tests.oracles.water import still
+from tests.oracles.water import again, still
 
 NU, APART = 1e-3, 0.05  # m²/s, m
 RATE = 12.0 * NU / APART**2  # 4.8 1/s
@@ -49,26 +52,37 @@ def test_eight_modes_have_the_drag_of_stokes_flow():
     assert drag.real == pytest.approx(RATE, rel=1e-6) and drag.imag == pytest.approx(0.2 * slow, rel=1e-4)
 
 
-@pytest.mark.parametrize("precision", ["f64", pytest.param("f32", marks=pytest.mark.slow)])
+SPEED, FREQUENCY = 0.1, 2.0  # m/s, Hz
+OMEGA = 2.0 * np.pi * FREQUENCY
+
+
+def taken_along(thin: float, precision: str) -> Scene:
+    """A drop in a tank that sways, of so much of the viscosity."""
+    sway = Sway(SPEED / OMEGA, FREQUENCY)
+    return drop((0.0, 0.0), motions=[(sway,)], soft_start=0.2, kinematic=thin * NU, precision=precision)[0]
+
+
+@pytest.fixture(scope="module", params=["f64", pytest.param("f32", marks=pytest.mark.slow)])
+def swayed(request) -> Iterator[Simulation]:
+    run = Simulation(taken_along(1.0, request.param), threads=1, arch="cpu")
+    yield run
+    run.close()
+
+
 @pytest.mark.parametrize("thin", [1.0, 0.01])
-def test_a_tank_that_sways_takes_a_free_drop_along(thin, precision):
+def test_a_tank_that_sways_takes_a_free_drop_along(swayed, thin):
     """By tanh z/z, at b²ω/ν = 31 and 3100, where the drag is three times and a third of 12 ν u/b² and late."""
-    speed, frequency = 0.1, 2.0
-    omega = 2.0 * np.pi * frequency
-    sway = Sway(speed / omega, frequency)
-    scene, _ = drop((0.0, 0.0), motions=[(sway,)], soft_start=0.2, kinematic=thin * NU, precision=precision)
-    run = Simulation(scene, threads=1, arch="cpu")
+    run = again(swayed, taken_along(thin, swayed.scene.precision))
     times, found = [], []
-    while run.time < 4.0:
+    while run.time < 2.0:
         run.advance(5)
         found.append(run.snapshot()["water_velocity"][0, :, 0].mean())
         times.append(run.time)
-    run.close()
-    late = np.array(times) > 2.0
-    phases = omega * np.array(times)[late]
+    late = np.array(times) > 1.0
+    phases = OMEGA * np.array(times)[late]
     fit = np.linalg.lstsq(np.column_stack([np.cos(phases), np.sin(phases), 0 * phases + 1]), np.array(found)[late])[0]
-    wanted = speed * exact(omega, thin * NU)
-    np.testing.assert_allclose(fit[0] - 1j * fit[1] + speed, wanted, atol=0.04 * abs(wanted))  # seen from the tank
+    wanted = SPEED * exact(OMEGA, thin * NU)
+    np.testing.assert_allclose(fit[0] - 1j * fit[1] + SPEED, wanted, atol=0.04 * abs(wanted))  # seen from the tank
 
 
 @pytest.mark.slow

@@ -28,7 +28,7 @@ LAWS = [
     ("linear", "coulomb", "elastic-plastic"),
     ("hysteretic", "viscous", "none"),
 ]
-QUICK = LAWS[2], LAWS[3], LAWS[5]
+QUICK = LAWS[2], LAWS[5]
 OUTLINE = box(0.2, 0.2)
 PLACE = np.array([0.0, 0.1])
 
@@ -54,14 +54,15 @@ def bench(request):
     run.close()
 
 
-def meeting(run, speed: float, angle=0.0, spin=0.0):
+def meeting(run, speed: float, angle=0.0, spin=0.0, later=0.0):
     """Put the grains of every world so that they, or the first and the floor, meet at a phase of a step.
 
-    `angle` (W,) or one, from the normal; `spin` (W,) or one of the first grain. Returns the gaps (m).
+    `angle` (W,) or one, from the normal; `spin` (W,) or one of the first grain; all meet `later` by so many steps.
+    Returns the gaps (m).
     """
     angle, spin = np.broadcast_to(angle, len(CASES)), np.broadcast_to(spin, len(CASES))
     radius, wall = RADIUS * CASES[:, 1], CASES[:, 3] > 0
-    gap = (CASES[:, 2] + 0.5) * run.dt * speed * np.cos(angle)
+    gap = (CASES[:, 2] + 0.5 + later) * run.dt * speed * np.cos(angle)
     position = np.zeros((len(CASES), 2, 2))
     position[:, 0] = np.where(wall[:, None], [0.0, 0.0], PLACE)
     position[:, 0, 1] += np.where(wall, radius, 2.0 * radius) + gap
@@ -208,23 +209,20 @@ def test_energy_never_increases_and_momentum_is_kept(bench):
     assert np.all(np.abs(momenta(bench) - before)[:, free] < [[1e-12], [1e-12], [1e-9]] * scale)
 
 
-def test_eight_steps_a_collision_leave_the_mean_restitution():
-    """Right to 0.3 % in the mean over 48 moments of onset: a damper is made up for what the predicted rate lags."""
-    restitutions, moments = np.repeat([0.6, 0.7, 0.9], 48), np.tile(np.arange(48) / 48, 3)
-    grain, position = [material(restitution=e) for e in restitutions], np.tile([PLACE, 1.5 * PLACE], (144, 1, 1))
-    _, duration, _ = expected("hertz", 1.0, False, 1.0, 1.0)
-    scene = {"gravity": 0.0, "step": duration / 8.0, "start_speed": 1.0}
-    run = simulation(position, np.full((144, 1), RADIUS), OUTLINE, grain, **scene)
-    position[:, 0] = PLACE + np.array([0.0, 2.0 * RADIUS])
-    position[:, 0, 1] += (moments + 0.5) * run.dt
-    position[:, 1] = PLACE
-    run.place(position, np.tile([[0.0, -1.0], [0.0, 0.0]], (144, 1, 1)))
-    run.advance(20)
-    velocity = run.snapshot()["velocity"][:, :, 1]
-    run.close()
-    errors = ((velocity[:, 0] - velocity[:, 1]) / restitutions - 1.0).reshape(3, 48)
-    assert np.abs(errors.mean(axis=1)).max() < 3e-3
-    assert np.abs(errors).max() < 1e-2
+def test_eight_steps_a_collision_leave_the_mean_restitution(bench):
+    """Right to 0.2 % in the mean over 50 moments of onset: a damper is made up for what the predicted rate lags."""
+    if bench.scene.normal != "hertz-viscoelastic":
+        pytest.skip("other laws have other dampers, or steps")
+    bench.dt = expected("hertz", 1.0, False, 1.0, 1.0)[1] / 8.0
+    alike = (CASES[:, 1] == 1.0) & (CASES[:, 3] == 0)
+    errors = []
+    for moment in np.arange(10) / 10.0:
+        meeting(bench, 1.0, later=moment)
+        bench.advance(24)
+        velocity = bench.snapshot()["velocity"][alike, :, 1]
+        errors.append((velocity[:, 0] - velocity[:, 1]) / CASES[alike, 0] - 1.0)
+    for e in (0.6, 0.95):
+        assert abs(np.array(errors)[:, CASES[alike, 0] == e].mean()) < 2e-3
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ RADIUS = 3e-3
 TANK = np.array([[-0.03, 0.0], [0.02, 0.0], [0.1, 0.06], [0.1, 0.16], [0.03, 0.16], [0.03, 0.1], [-0.1, 0.1]])
 REFLEX = 5
 COUNT, WIDTH, LOOKS = 36, 0.04, 140
-WIDE_SKIN = 2.4 * RADIUS
+SKIN, WIDE_SKIN = 1.2e-3, 2.4 * RADIUS
 
 
 def clouds(rng: np.random.Generator, count: int, cell: float):
@@ -68,11 +68,18 @@ def listed(contacts, w: int) -> np.ndarray:
     return rows
 
 
-def test_lists_equal_brute_force():
-    """The lists of the first step, taken with a step so short that nobody moves."""
-    skin, rng = 1.2e-3, np.random.default_rng(7)
-    radius, position = clouds(rng, 150, 2.0 * RADIUS + skin)
-    run = Simulation(Scene(radius, TANK, material(), material(), step=1e-15), position, threads=1, skin=skin)
+@pytest.fixture(scope="module")
+def clouded():
+    """A simulation of the clouds with a step so short that nobody moves, and where they are."""
+    radius, position = clouds(np.random.default_rng(7), 150, 2.0 * RADIUS + SKIN)
+    scene = Scene(radius, TANK, material(), material(), step=1e-15, schedule="per-world")
+    run = Simulation(scene, position, threads=1, skin=SKIN)
+    return run, position
+
+
+def test_lists_equal_brute_force(clouded):
+    """The lists of the first step."""
+    (run, position), rng, skin, radius = clouded, np.random.default_rng(8), SKIN, clouded[0].scene.radius
     for shift in (0.0, 2e-3):
         moved = position + shift * rng.normal(size=position.shape)
         run.place(moved)
@@ -88,7 +95,6 @@ def test_lists_equal_brute_force():
                 assert len(rows) == len(expected), (name, w)
                 assert set(map(tuple, rows.tolist())) == expected, (name, w)
             check_stiffness(run, w, pairs, walls)
-    run.close()
 
 
 def check_stiffness(run: Simulation, w: int, pairs: np.ndarray, walls: np.ndarray) -> None:
@@ -130,15 +136,14 @@ def shaken(skin: float | None, room: int = 1) -> Simulation:
     return run
 
 
-def test_lists_equal_brute_force_while_grains_fly():
+def test_lists_equal_brute_force_while_grains_fly(clouded):
     """New lists after each of many flights of a third of the skin; cells are searched for a few of them.
 
     Each world by itself: in the second nobody moves and its first candidates stay.
     """
-    skin, rng = 1.2e-3, np.random.default_rng(9)
-    radius, position = (values[:2] for values in clouds(rng, 150, 2.0 * RADIUS + skin))
-    scene = Scene(radius, TANK, material(), material(), step=1e-15, schedule="per-world")
-    run = Simulation(scene, position, threads=1, skin=skin)
+    (run, position), skin, radius = clouded, SKIN, clouded[0].scene.radius
+    run.place(position)
+    position, rng = position.copy(), np.random.default_rng(9)
     flight, sought = rng.normal(size=position[0].shape), []
     flight *= 0.33 * skin / np.linalg.norm(flight, axis=1).max()
     for _ in range(24):
@@ -154,7 +159,7 @@ def test_lists_equal_brute_force_while_grains_fly():
             pairs, walls = listed(run.grains.lists.pairs, w), listed(run.grains.lists.contacts, w)
             assert set(map(tuple, pairs.tolist())) == brute_pairs(position[w], radius[w], skin)
             assert set(map(tuple, walls.tolist())) == brute_walls(position[w], radius[w], skin)
-    run.close()
+    run.close()  # those that follow find their kernels
     # More than three skins lie between two searches: ten flights of nearly a third each
     assert np.flatnonzero(np.array(sought)[:, 0]).tolist() == [0, 10, 20]
     assert np.flatnonzero(np.array(sought)[:, 1]).tolist() == [0]

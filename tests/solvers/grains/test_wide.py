@@ -43,6 +43,7 @@ def thrown(lanes, threads=1, **models):
     return ended(run, STEPS)
 
 
+@pytest.mark.slow  # without the optimiser they are compiled below, and all that is slow is run before a release
 def test_without_real_vectors_kernels_compile_as_users_have_them():
     """With Taichi's optimiser, which tests do without: it once ended the process."""
     steps = 'from tests.solvers.grains.test_wide import throw; throw(0, tangential="mindlin").advance(10)'

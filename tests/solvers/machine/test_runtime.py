@@ -280,7 +280,7 @@ def test_pinned_threads_run_on_separate_cores():
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits on memory as Linux has them")
-@pytest.mark.parametrize("limit", [500_000_000, 1_000_000_000])
+@pytest.mark.parametrize("limit", [500_000_000, pytest.param(1_000_000_000, marks=pytest.mark.slow)])
 def test_too_little_memory_to_start_is_reported_in_one_sentence(limit):
     code = f"""
 import resource

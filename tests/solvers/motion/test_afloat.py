@@ -41,7 +41,8 @@ CARGO = COUNT * 4.0 / 3.0 * pi * RADIUS**3 * GRAIN.density / SHEET  # kg/m
 ADDED = Radiation(np.diag([40.0, 52.0, 0.2]), np.diag([20.0, 100.0, 0.05]))
 NONE = Radiation(np.zeros((3, 3)), np.zeros((3, 3)))
 ALONE, TINY, LIVELY, VACUUM, OVER, RESONANT, ROLLING, LOSSY, HATCH = range(9)
-LASTS, CLOSE = 5.0, 2.0  # s, of the voyage and of those that it is compared with
+LASTS, CLOSE = 4.0, 1.6  # s, of the voyage and of those that it is compared with
+LOOKS = 10  # a second
 HEEL, RELEASE = 0.006, 0.5  # rad, s
 ROUNDING = 1e-10  # of sums over many steps
 EDGES = ((0.15, 0.17), (-0.15, 0.17))  # m, of a hatch
@@ -141,7 +142,7 @@ class Run:
         self.every = int(self.simulation.carrier.every[0])
         self.cargo = self.simulation.cargo()
 
-    def sail(self, every: int, lasts: float, looks: int = 50, nudged: bool = False):
+    def sail(self, every: int, lasts: float, looks: int, nudged: bool = False):
         """Times, rows of observations, and what is asked of the frame and the grains, at even looks.
 
         Grains that are nudged begin one last digit beside their places, some to this side and some to that.
@@ -202,17 +203,17 @@ def run():
 
 @pytest.fixture(scope="module")
 def voyage(run):
-    return run.sail(run.every, LASTS)
+    return run.sail(run.every, LASTS, round(LOOKS * LASTS))
 
 
 @pytest.fixture(scope="module")
 def finer(run):
-    return run.sail(run.every // 2, CLOSE, 20)
+    return run.sail(run.every // 2, CLOSE, round(LOOKS * CLOSE))
 
 
 @pytest.fixture(scope="module")
 def twin(run):
-    return run.sail(run.every, CLOSE, 20, nudged=True)
+    return run.sail(run.every, CLOSE, round(LOOKS * CLOSE), nudged=True)
 
 
 def test_a_ship_without_cargo_moves_as_the_ship_alone(run, voyage):

@@ -64,6 +64,7 @@ def test_ship_and_water_on_steps_of_their_own():
     assert rolls[0] == pytest.approx(rolls[1], abs=3e-4 * np.ptp(rolls[1]))
 
 
+@pytest.mark.slow  # a matter at a pace of its own is in `test_pace.py`, water in a ship in `test_water_aboard.py`
 def test_a_run_goes_on_with_the_same_bits(run):
     """Saved after a step of the water and restored, it goes on as if it had not stopped."""
     state, steps = run.state(), run.steps

@@ -36,12 +36,14 @@ def outline_of(name):
 HALF = [star(5, 0.25), irregular(3, 9), outline_of("rice"), outline_of("corn"), outline_of("sand")]
 OUTLINES = [*HALF, *(mirrored(outline) for outline in HALF)]
 MIRROR = np.roll(np.arange(len(OUTLINES)), len(HALF))
+DISC = Contour(1.0)
 AXES = np.array([(1.0, 0.5), (1.4, 0.6), (0.8, 0.8)])
 
 
 @pytest.fixture(scope="module")
 def asked():
-    return Asked(OUTLINES, COUNT, NODES)
+    """With a disc, the last of them: its kernels are those of the outlines."""
+    return Asked([*OUTLINES, DISC], COUNT, NODES)
 
 
 @pytest.fixture(scope="module")
@@ -147,25 +149,24 @@ def disc_pairs():
     way = random.uniform(-np.pi, np.pi, COUNT)
     towards = np.stack([np.cos(way), np.sin(way)], axis=1)
     place = np.stack([np.zeros((COUNT, 2)), distance[:, None] * towards], axis=1)
-    shape = np.zeros((COUNT, 2), dtype=int)
+    shape = np.full((COUNT, 2), len(OUTLINES))
     return Pairs(shape, scale, random.uniform(-np.pi, np.pi, (COUNT, 2)), place), distance, towards
 
 
-def test_discs():
+def test_discs(asked):
     """The smooth rule is exact; of n nodes the deepest is half a step π/n off at most, and its overlap too small.
 
     The deepest of radius r and overlap ξ lies in another disc of radius R, at an angle a of the first, by
     R − √(d² + r² − 2 d r cos a), which is ξ less d r a²/2R.
     """
-    rules = Asked([Contour(1.0)], COUNT, NODES)
     given, distance, towards = disc_pairs()
-    number, found = rules.scanned(given, 1e-3)
+    number, found = asked.scanned(given, 1e-3)
     assert (number == 1).all()
     overlap = given.scale.sum(axis=1) - distance
     assert np.abs(found[:, 0, 0] - overlap).max() < 4.0 * ERROR
     # The table's slopes are off by its error over a quarter of a cell.
-    assert np.abs(found[:, 0, 1:3] + towards).max() < 4.0 * ERROR * rules.tables.cells / (2.0 * np.pi)
-    nodes = np.maximum(rules.by_nodes(given)[:, 0], 0.0)
+    assert np.abs(found[:, 0, 1:3] + towards).max() < 4.0 * ERROR * cells_for([DISC]) / (2.0 * np.pi)
+    nodes = np.maximum(asked.by_nodes(given)[:, 0], 0.0)
     small = given.scale.min(axis=1)
     worst = 0.5 * distance * small / given.scale.max(axis=1) * (np.pi / NODES) ** 2
     assert (nodes <= overlap + 1e-9).all() and (nodes >= np.maximum(overlap - 1.02 * worst, 0.0) - 1e-9).all()
