@@ -23,7 +23,8 @@ REASONS = {
     "tangential law: the preset's": """The source's presets have the source's law, Haff and Werner's, which creeps
         under a lasting load, as the section on creep shows. Mindlin's with history costs the same and stands still:
         take it where a bed is to rest.""",
-    "skin: 0.05 diameters": "The fastest in a thrown bed, and within a tenth of the fastest at rest.",
+    "skin: 0.05 to 0.3 diameters": """Wider for faster grains, as the cost of building lists asks; the forces are the
+        same.""",
     "repeats": "By the interval you need: see the section on repeats. One bed says little: a few degrees either way.",
 }
 
