@@ -2,8 +2,9 @@
 
 import taichi as ti
 
+from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.hertz import Hertz, hertz_duration
-from solvers.grains.laws.kick import cut_at_zero, reached, unlagged
+from solvers.grains.laws.kick import cut_at_zero, reached
 from solvers.grains.materials import Interface
 from solvers.grains.restitution import CONSTANT, damping_for
 from solvers.machine.limit import Limit
@@ -50,6 +51,6 @@ class HertzDashpot(Hertz):
         """F_n (N) of a block of contacts from the overlap ξ (m), its root √ξ and its rate ξ̇ (m/s)."""
         spring = contacts.stiffness[w, block] * root
         end, begin = reached(approach, rate, dt)
-        share = unlagged(contacts.lag[w, block] * root)
-        damper = contacts.dashpot[w, block] * (1.0 / dt) * (end - begin) * share
+        lag = greater(1.0 - contacts.lag[w, block] * root, 0.0)
+        damper = contacts.dashpot[w, block] * (1.0 / dt) * (end - begin) * lag
         return cut_at_zero(spring * overlap, damper, (0.75 * dt) * spring * rate)

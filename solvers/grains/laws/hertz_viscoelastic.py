@@ -4,8 +4,9 @@ from math import sqrt
 
 import taichi as ti
 
+from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
-from solvers.grains.laws.kick import cut_at_zero, reached, unlagged
+from solvers.grains.laws.kick import cut_at_zero, reached
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 
@@ -28,7 +29,8 @@ class HertzViscoelastic(Hertz):
     ends when the force vanishes, not when the overlap does (Schwager and Pöschel 2008).
 
     Damper and end are taken as their means over a kick (`solvers.grains.laws.kick`): the damper's impulse is the
-    change of (2/3) γ_n ξ^(3/2), exactly, and is made up for the lag of Verlet's predicted ξ̇ (`unlagged`).
+    change of (2/3) γ_n ξ^(3/2), exactly. Verlet's predicted ξ̇ lags behind by Δt²/2 of the jerk, which in a collision is
+    −(3/2) k √ξ ξ̇/m_eff; so the damper is multiplied by 1 − (3/4) Δt² k √ξ/m_eff.
 
     Limits: small overlaps, ξ ≪ R, of spheres that do not yield, and impacts slow beside waves in the grains (Johnson
     1985, chapter 11). The restitution falls with speed, as that of elastic grains with internal friction does.
@@ -70,6 +72,6 @@ class HertzViscoelastic(Hertz):
         k = contacts.stiffness[w, block]
         end, begin = reached(approach, rate, dt)
         swept = end * ti.sqrt(end) - begin * ti.sqrt(begin)
-        spring, share = k * root, unlagged(contacts.lag[w, block] * root)
-        damper = (c[0] * (2.0 / 3.0) / dt) * k * swept * share
+        spring, lag = k * root, greater(1.0 - contacts.lag[w, block] * root, 0.0)
+        damper = (c[0] * (2.0 / 3.0) / dt) * k * swept * lag
         return cut_at_zero(spring * overlap, damper, 0.5 * dt * spring * rate)

@@ -24,18 +24,6 @@ def reached(approach, rate, dt):
 
 
 @ti.func
-def unlagged(lag):
-    """Share of a damper that is left to make up for the lag of Verlet's predicted ξ̇, for (ω Δt)²/2, ω² = F′(ξ)/m_eff.
-
-    The prediction, ξ̇ = (3 ξ_n − 4 ξ_(n−1) + ξ_(n−2))/(2 Δt), damps a slightly damped oscillation of a linear spring
-    2 − cos θ times as much as it should, θ the angle of a step. Verlet's has cos θ = 1 − (ω Δt)²/2, so a damper of
-    1/(1 + (ω Δt)²/2) of its strength damps exactly as the law says, at any step; a nonlinear spring has its own ω at
-    each overlap.
-    """
-    return 1.0 / (1.0 + lag)
-
-
-@ti.func
 def cut_at_zero(spring, damper, rise):
     """Mean over a kick of max(F, 0), for the force F of spring and damper (N), which changes by 2 `rise` (N) in it.
 

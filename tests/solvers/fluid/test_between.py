@@ -69,6 +69,7 @@ def swayed(request) -> Iterator[Simulation]:
     run.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("thin", [1.0, 0.01])
 def test_a_tank_that_sways_takes_a_free_drop_along(swayed, thin):
     """By tanh z/z, at b²ω/ν = 31 and 3100, where the drag is three times and a third of 12 ν u/b² and late."""

@@ -45,7 +45,6 @@ def test_gauges_do_not_show_the_background(run):
     assert abs(run.observe()["gauge_pressure"][0, 0]) < 0.02 * BACKGROUND
 
 
-@pytest.mark.slow
 def test_water_closes_up_behind_a_square_and_accounts_for_its_energy(run):
     """Few wet places are farther from a particle than in a slightly strained lattice (0.71 spacings)."""
     start = run.observe()

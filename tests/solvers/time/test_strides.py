@@ -10,6 +10,7 @@ from tests.oracles.scenes import box, material
 
 G, RADIUS, BASE, STRETCH = 9.81, 1.5e-3, 4e-6, 4
 SOFT = material(young=1e7, friction=0.4, restitution=0.5)
+SKIN = 1.5e-4  # m: one that follows the speed goes by the base step, too
 SLOW = pytest.mark.slow  # of schedules that another one stands for in the quick tests
 
 
@@ -31,7 +32,7 @@ def started(base: float, stretch: int, schedule: str) -> Simulation:
         start_speed=1.0,
     )
     units = 2 if schedule == "per-band" else None
-    return Simulation(scene, place, 1, arch="cpu", units=units, stretch=stretch)
+    return Simulation(scene, place, 1, skin=SKIN, arch="cpu", units=units, stretch=stretch)
 
 
 @pytest.fixture

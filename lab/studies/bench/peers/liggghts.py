@@ -29,8 +29,6 @@ from lab.studies.bench.peers.peer import MOTION, PeerRun, Task, carry_out
 
 NAME = "LIGGGHTS"
 EXECUTABLE = "liggghts"
-SKIN = 0.1
-"""Thickness of the skin of the neighbour lists over the grains' mean diameter."""
 
 _DECK = """\
 atom_style granular
@@ -71,7 +69,7 @@ def run_liggghts(task: Task) -> PeerRun:
     material = task.material
     deck = task.fill(
         _DECK + MOTION + _DUMP,
-        skin=SKIN * task.diameter,
+        skin=task.skin * task.diameter,
         young=material.young,
         poisson=material.poisson,
         restitution=material.restitution,

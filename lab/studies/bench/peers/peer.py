@@ -22,6 +22,7 @@ TRACE, FINAL = (
     "trace.txt",
     "final.txt",
 )  # what it writes: step, y, z of the centre of mass; id, y, z, velocities of the grains
+SKIN = 0.1  # of the neighbour lists, over the grains' mean diameter
 HEADER = 9  # lines of a dump before its rows
 AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}  # for Open MPI; MPICH needs nothing
 
@@ -79,6 +80,7 @@ class Task:
     tangential: "history" is spring, dashpot and slider; "no_history" dashpot and slider.
     sample_every: steps from one sample of the trace to the next, the first being t = 0.
     processes: how many share the bed among them through MPI.
+    skin: thickness of the skin of the neighbour lists over the grains' mean diameter.
     workdir: folder that keeps deck, bed and log; without it they are thrown away.
 
     Raises LabError for a material without a restitution.
@@ -99,6 +101,7 @@ class Task:
     tangential: Literal["history", "no_history"] = "history"
     sample_every: int = 1000
     processes: int = 1
+    skin: float = SKIN
     workdir: Path | None = None
 
     def __post_init__(self):
