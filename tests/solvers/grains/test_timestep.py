@@ -193,6 +193,16 @@ def test_a_step_is_not_forced_past_what_a_strong_damper_bears(restitution):
     assert made.longest_step(1.6) == pytest.approx(1.6 * made.time_step())
 
 
+@pytest.mark.parametrize("restitution", [0.9, 0.05])
+def test_gears_scheme_bears_fewer_derived_steps(restitution):
+    """Four fifths of what Verlet's bears, as the map of limits has it."""
+    verlet, gear = (
+        scene(restitution=restitution, stiffness_scale=1e-3, integrator=name) for name in ("verlet", "gear")
+    )
+    most = [furthest(made.step_limits()) / made.time_step() for made in (verlet, gear)]
+    assert most[1] == pytest.approx(0.8 * most[0])
+
+
 @pytest.mark.parametrize("tangential", TANGENTIAL)
 @pytest.mark.parametrize("rolling", ROLLING)
 def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
