@@ -94,6 +94,7 @@ def test_deck_edge_and_opening_of_a_box():
     assert np.tan(edge.deck) == pytest.approx(1.0 / HALF, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_opening_forward_of_a_ship_by_the_head_goes_under_sooner():
     """Trimmed by t she has t x/L less at an opening: the closed form of the even keel, with that draught."""
     head = Weights(MASS, LENGTH / 2 + 1.0, 0.0, KG, 0.0)

@@ -126,6 +126,7 @@ def test_a_killed_painter_fails_one_recording_and_another_takes_its_place(sweep,
     assert not failed and first.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="looks for processes")
 def test_an_interrupt_ends_the_painters_and_leaves_no_torn_video(tmp_path, monkeypatch):
     runs = [made(tmp_path / name, frames=100) for name in ("a", "b")]

@@ -319,6 +319,7 @@ def test_a_disc_among_shapes_is_a_disc():
     assert outline == Contour(1.0)
 
 
+@pytest.mark.slow
 def test_a_warning_names_sharp_concavities_that_may_gain_energy():
     lobed = {"lobed": {"descriptors": [0.0] * 49 + [0.0133]}}
     assert 'contact.outlines = "area"' in explain(loaded(lobed))

@@ -80,7 +80,7 @@ def drawn(folder):
     [
         pytest.param(TILT, {}, ["shift", "slope", "hysteresis", "force", "contacts", "energy"], marks=SLOW),
         (TILT, {"open_edges": (2,)}, ["spilled", "shift", "slope", "hysteresis", "force", "contacts", "energy"]),
-        (SWAY, {}, ["shift", "spectrum", "wave", "force", "contacts", "energy"]),
+        pytest.param(SWAY, {}, ["shift", "spectrum", "wave", "force", "contacts", "energy"], marks=SLOW),
         (preset(), {"parts": {"gate": np.zeros((2, 2))}}, ["altitude", "shift", "force", "contacts", "energy"]),
     ],
 )
@@ -88,7 +88,8 @@ def test_each_experiment_has_the_relevant_figures(tmp_path, resolved, scene, fig
     assert drawn(run(tmp_path, resolved, **scene)) == figures
 
 
-@pytest.mark.parametrize("resolved", [TILT, pytest.param(SWAY, marks=SLOW)])
+@pytest.mark.slow
+@pytest.mark.parametrize("resolved", [TILT, SWAY])
 def test_a_world_that_loses_every_grain_is_left_out_of_figures(tmp_path, resolved):
     assert "shift" in drawn(run(tmp_path, resolved, open_edges=(2,), lost=1))
 

@@ -59,6 +59,7 @@ def momentum(run: Simulation) -> tuple[np.ndarray, float]:
     return np.array([m @ v, m @ w]), m.sum()
 
 
+@pytest.mark.slow
 def test_water_tank_and_bodies_share_momentum_and_energy(run):
     """Momentum changes by weight and by minus all loads, to rounding; the work of the bodies is all accounted for.
 
@@ -83,6 +84,7 @@ def test_water_tank_and_bodies_share_momentum_and_energy(run):
     np.testing.assert_allclose(turn, [*angles, 0.0], atol=1e-12)
 
 
+@pytest.mark.slow
 def test_bodies_in_still_water_bear_its_pressure(run):
     """A square 8 spacings wide bears its own weight of water (Archimedes), to 4 %, a plate between two levels their
     difference, and no water passes it. The load on the tank and the bodies is the weight of the water, which rests.

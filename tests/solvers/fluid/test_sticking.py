@@ -26,9 +26,10 @@ def stirred() -> Scene:
     return still(0.6, 0.6, 0.3, 12, parts=parts, drops=drops[:, free], **STICKY)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("make", "close"),
-    [pytest.param(rolled, 0.005, id="tank"), pytest.param(stirred, 0.02, id="part", marks=pytest.mark.slow)],
+    [pytest.param(rolled, 0.005, id="tank"), pytest.param(stirred, 0.02, id="part")],
 )
 def test_all_that_walls_work_is_in_the_water_or_lost(make, close):
     """Energy changes by the work of the walls: a drag is booked where the water is, not at the dummy.

@@ -42,7 +42,8 @@ def calm(monkeypatch):
 
 
 @pytest.mark.usefixtures("calm")
-@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=SLOW)])
+@pytest.mark.slow
+@pytest.mark.parametrize("schedule", ["per-world", "per-band"])
 def test_steps_of_several_base_steps_are_steps_of_that_length(schedule):
     """Bit for bit, through falls, collisions and neighbour-list rebuilds."""
     found = []
