@@ -124,7 +124,7 @@ def limits_of_grains(scene, speed: float) -> list[Limit]:
         replace(
             limit,
             step=reach * limit.step * (bearing if limit.firm else 1.0),
-            forced=max(1.0, bearing * limit.forced),
+            forced=min(limit.forced, bearing * FURTHEST),
             reason=of + limit.reason,
         )
         for limit in tightest

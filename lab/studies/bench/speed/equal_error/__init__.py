@@ -9,6 +9,7 @@ from shutil import rmtree
 import numpy as np
 
 from lab.report.page import Page
+from lab.studies.bench.peers.peer import SKIN
 from lab.studies.bench.remembered import remembered
 from lab.studies.bench.speed import processors
 from lab.studies.bench.speed.beds import SCALE, usual_bed
@@ -16,6 +17,7 @@ from lab.studies.bench.speed.equal_error.situations import (
     LEAN,
     LONGEST_STRIDE,
     MIXED,
+    SKIN_IN_MOTION,
     SWAY,
     every_situation,
     timed,
@@ -115,7 +117,8 @@ def say_how(page: Page, effort: Effort) -> None:
         {FURTHEST:g} derived steps of standard that may be forced. While grains are slow, both are up to
         {LONGEST_STRIDE} times as long, as in the lab's runs. In flow the tank leans by {np.degrees(LEAN):g} deg; swayed
         it goes to and fro by {1e3 * SWAY.amplitude:g} mm at {SWAY.frequency:g} Hz. All codes begin with the same moving
-        bed and new lists, and follow it for {effort.course:g} s, each turn anew.""")
+        bed and new lists, and follow it for {effort.course:g} s, each turn anew; the other codes' lists have a skin of
+        {SKIN:g} mean diameters at rest and {SKIN_IN_MOTION:g} in motion, the fastest.""")
 
 
 def measured(codes: Mapping[str, Callable], work: Path, kept: Path, effort: Effort, copies: int) -> Iterator[tuple]:
