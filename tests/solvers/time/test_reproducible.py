@@ -20,7 +20,7 @@ STEP = 2e-5
 EARLY, ALL = 2_200, 10_000  # steps: 0.044 s, grains have fallen on others; 0.2 s, the tank tilts by 30°
 
 
-def run(worlds=range(WORLDS), looks=(ALL,), threads=1, skin=6e-4) -> list[dict[str, np.ndarray]]:
+def run(worlds=range(WORLDS), looks=(ALL,), threads=1, skin=None) -> list[dict[str, np.ndarray]]:
     """The states after so many steps of these worlds, each with its own start and its own angle to tilt to.
 
     All have grains of the same sizes: a scene takes the lists' cells from its largest grain and, where it is not told,
@@ -83,6 +83,7 @@ def test_a_world_alone_moves_as_among_others(batch):
 
 @pytest.mark.slow
 def test_the_lists_skin_changes_only_rounding(batch):
+    """Rounding grows with the impacts, to some 5e-12 here; a contact found a step late shows in the fourth digit."""
     (state,) = run(looks=(EARLY,), skin=1e-4)
     for name, values in batch[0].items():
-        assert np.abs(state[name] - values).max() <= 1e-12 * np.abs(values).max(), name
+        assert np.abs(state[name] - values).max() <= 1e-10 * np.abs(values).max(), name
