@@ -80,6 +80,7 @@ def killed(work: Path, first, again, code: str, kills: int, before: str = "") ->
         assert recorded(cut) == expected
 
 
+@pytest.mark.slow
 def test_a_run_killed_at_random_times_gives_the_same_results(tmp_path):
     """Of an empty tank, which compiles fast, and without figures, which take as long as the rest of such a run."""
     (tmp_path / "tank.toml").write_text(TANK)

@@ -45,6 +45,7 @@ def test_gauges_do_not_show_the_background(run):
     assert abs(run.observe()["gauge_pressure"][0, 0]) < 0.02 * BACKGROUND
 
 
+@pytest.mark.slow
 def test_water_closes_up_behind_a_square_and_accounts_for_its_energy(run):
     """Few wet places are farther from a particle than in a slightly strained lattice (0.71 spacings)."""
     start = run.observe()
@@ -61,6 +62,7 @@ def test_water_closes_up_behind_a_square_and_accounts_for_its_energy(run):
     assert abs(residual(rows, residual(start, 0.0))[0]) < 0.02 * rows["water_work"][0]
 
 
+@pytest.mark.slow
 def test_walls_are_no_surface_to_shifting(run):
     """Particles at the floor are shifted towards it and off it, as well as along it."""
     p = run.water.particles
