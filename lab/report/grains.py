@@ -15,6 +15,7 @@ from lab.report.numbers import count_of
 from solvers.grains.laws import COHESION
 from solvers.grains.lists.skin import Skin
 from solvers.grains.shapes.given import Shapes
+from solvers.grains.timestep import FURTHEST
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
@@ -146,7 +147,7 @@ def cautions(recording: Recording) -> Iterator[str]:
     if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
         yield rough
     if recording.preset.run.force_step:
-        yield "The step is forced past the derived one: at twice that the restitution errs by up to 1 %."
+        yield f"The step is forced past the derived one: at {FURTHEST:g} times that the restitution errs by up to 1 %."
     overlap = recording.series["overlap"].max(initial=0.0)
     if overlap > LARGE_OVERLAP:
         yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."

@@ -127,11 +127,7 @@ class GrainMatter(Matter):
         """Base steps that a step may take: a power of two, by how fast any two grains of a world may meet now."""
         pace = 1
         if ti.static(self.paced):
-            fastest = ti.cast(0.0, self.grains.real)
-            for i in range(self.grains.mobile):
-                v = [field[w, i] for field in ti.static(self.grains.velocity)]
-                fastest = ti.max(fastest, dot(v, v))
-            meeting = HASTE * (2.0 * ti.sqrt(fastest) + self.lists.walls.fastest)
+            meeting = HASTE * (2.0 * self.grains.fastest(w) + self.lists.walls.fastest)
             for k in ti.static(range(self.doublings)):
                 if meeting < self.calm[k]:
                     pace = 2 ** (k + 1)

@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine.state import Axis, State
-from solvers.space.axes import PLANE, named
+from solvers.space.axes import PLANE, dot, named
 
 FAR = 1e3  # m
 
@@ -120,6 +120,15 @@ class Grains:
         for a in ti.static(range(self.axes)):
             self.force[a][w, i] = self.force[a][w, i] + force[a]
         self.torque[w, i] = self.torque[w, i] + torque
+
+    @ti.func
+    def fastest(self, w):
+        """The highest speed (m/s) of a world's grains."""
+        highest = ti.cast(0.0, self.real)
+        for i in range(self.mobile):
+            v = [field[w, i] for field in ti.static(self.velocity)]
+            highest = ti.max(highest, dot(v, v))
+        return ti.sqrt(highest)
 
     @ti.func
     def between(self, w, i, j):

@@ -13,7 +13,6 @@ import taichi as ti
 
 from solvers.grains.state import Grains
 from solvers.machine.state import State
-from solvers.space.axes import dot
 
 LEAST, MOST, FARTHEST = 0.05, 0.3, 0.8  # mean diameters
 KEEN = 2.0  # √(2 b/p): measured, a list costs some three steps, and a skin of d lengthens a step by 1.5
@@ -69,9 +68,5 @@ class Skin:
     def adapt(self, w):
         """Choose the skin of the lists to come by how fast the grains of a world are now."""
         if ti.static(self.adapts):
-            fastest = ti.cast(0.0, self.grains.real)
-            for i in range(self.grains.mobile):
-                v = [field[w, i] for field in ti.static(self.grains.velocity)]
-                fastest = ti.max(fastest, dot(v, v))
-            wanted = ti.sqrt(self.bounds[2] * ti.sqrt(fastest))
+            wanted = ti.sqrt(self.bounds[2] * self.grains.fastest(w))
             self.width[w] = ti.max(self.bounds[0], ti.min(self.bounds[1], wanted))
