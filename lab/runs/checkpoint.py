@@ -17,7 +17,7 @@ import numpy as np
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import check_archive, check_progress
 
-FORMAT = "cargo-shift-lab checkpoint 6"
+FORMAT = "cargo-shift-lab checkpoint 7"
 FILE_NAME = "checkpoint.npz"
 
 

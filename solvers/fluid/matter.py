@@ -158,7 +158,7 @@ class WaterMatter(Matter):
         return self.lists.stale(u)
 
     @ti.func
-    def worn(self, u):
+    def worn(self, u, t):
         """Whether that may be so by a bound on what particles have travelled."""
         return self.lists.worn(u)
 

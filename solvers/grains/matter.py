@@ -99,7 +99,7 @@ class GrainMatter(Matter):
         """Move the grains of a unit; returns whether all of them are slow enough for the step."""
         speed = self.mover.move(self.grains, u, frame, kick, dt)
         if ti.static(not self.units.single):
-            self.lists.travel[u] = self.lists.travel[u] + (speed + self.unseen) * dt
+            self.lists.wear.travel[u] = self.lists.wear.travel[u] + (speed + self.unseen) * dt
         return self.is_sound(u, speed, dt)
 
     @ti.func
@@ -117,9 +117,12 @@ class GrainMatter(Matter):
     @ti.func
     def way(self, u, t):
         """How far (m) any grain of a unit has gone since there are lists; huge where there are none."""
-        moved = self.lists.travel[u]
+        wear = self.lists.wear
+        moved = wear.travel[u]
         if moved == 0.0:  # there are lists; without, it says NEVER
-            moved = self.lists.moved(u, t)
+            moved = wear.moved(u)
+            if ti.static(wear.walls.moving):
+                moved += 2.0 * wear.walls.gone(self.units.world(u), wear.built_at[u], t)
         return moved
 
     @ti.func
@@ -139,9 +142,9 @@ class GrainMatter(Matter):
         return self.lists.stale(u, t)
 
     @ti.func
-    def worn(self, u):
+    def worn(self, u, t):
         """Whether that may be so by a bound on what grains have travelled."""
-        return self.lists.worn(u)
+        return self.lists.worn(u, t)
 
     @ti.func
     def asked(self, u):
@@ -268,8 +271,10 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     laws.wide = setting.vectors if laws.fit and discs_alone else 0
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
     grains = Grains(arrays, *given) if scene.shapes is None else ShapedGrains(arrays, scene.shapes, *given)
+    together = scene.shapes is None and not units.single
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
-    skin = Skin(arrays, grains, widths(scene, setting.skin, units.single), scene.longest_bridge, early)
+    wide = widths(scene, setting.skin, units.single)
+    skin = Skin(arrays, grains, wide, scene.longest_bridge, early, together, walls.moving)
     lists = scene.farthest_reach, skin, laws, moduli, setting.room
     if scene.shapes is None:
         neighbours = Neighbours(arrays, units, grains, walls, *lists)

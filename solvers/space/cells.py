@@ -47,10 +47,10 @@ class Cells:
         self.strides = tuple(prod(self.shape[:a]) for a in range(self.axes))  # from a cell to the next along an axis
         self.cells = prod(self.shape)
         self.chunks = -(-(self.cells + 2) // CHUNK)
-        (self.first,) = own.integers((world, Axis("cell", self.chunks * CHUNK)), "first", kept=False)
+        (self.first,) = own.integers((world, Axis("cell", self.chunks * CHUNK)), "first")
         (self.chunk_first,) = own.integers((world, Axis("chunk", self.chunks)), "chunk_first", kept=False)
         (self.cell_of,) = own.integers((world, Axis("grain", grains.count)), "cell_of", kept=False)
-        (self.sorted,) = own.integers((world, Axis("place", grains.count)), "sorted", kept=False)
+        (self.sorted,) = own.integers((world, Axis("place", grains.count)), "sorted")
 
     @ti.func
     def find(self, w, i):
@@ -67,11 +67,17 @@ class Cells:
     @ti.func
     def box(self, w, i):
         """First and last cells along each axis of the box of a grain's cell and its neighbours."""
-        at = [self.cell_of[w, i] // self.strides[a] for a in ti.static(range(self.axes))]
+        lower, upper = self.around(self.cell_of[w, i], 1)
+        return lower, upper
+
+    @ti.func
+    def around(self, cell, rings: ti.template()):
+        """First and last cells along each axis of the box of a cell and so many `rings` of neighbours."""
+        at = [cell // self.strides[a] for a in ti.static(range(self.axes))]
         for a in ti.static(range(self.axes - 1)):
             at[a] = at[a] % self.shape[a]
-        lower = [ti.max(0, at[a] - 1) for a in ti.static(range(self.axes))]
-        upper = [ti.min(self.shape[a] - 1, at[a] + 1) for a in ti.static(range(self.axes))]
+        lower = [ti.max(0, at[a] - rings) for a in ti.static(range(self.axes))]
+        upper = [ti.min(self.shape[a] - 1, at[a] + rings) for a in ti.static(range(self.axes))]
         return lower, upper
 
     @ti.func

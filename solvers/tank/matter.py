@@ -123,8 +123,8 @@ class Matter:
         return False
 
     @ti.func
-    def worn(self, u):
-        """Whether that may be so by a cheap bound on the displacements."""
+    def worn(self, u, t):
+        """Whether that may be so by cheap bounds on the displacements."""
         return False
 
     @ti.func

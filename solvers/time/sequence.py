@@ -62,9 +62,7 @@ class Sequence:
 
         A short one is a power of two that divides `step`, so that it does not depend on where a run is looked at.
         """
-        stride = ti.min(due, self.carrier.pace(w))
-        for k in ti.static(range(len(self.matters))):
-            stride = ti.min(stride, self.matters[k].pace(w))
+        stride = ti.min(due, self.pace(w))
         if stride < BAR:
             longest, stride = stride, 1
             while 2 * stride <= longest and step % (2 * stride) == 0:
@@ -81,6 +79,19 @@ class Sequence:
         return found
 
     @ti.func
+    def rushes(self, w, stride):
+        """Whether a world takes longer steps than it may now; looked at when its lists are."""
+        return stride > self.pace(w)
+
+    @ti.func
+    def pace(self, w):
+        """Base steps that a step of a world may take: the least that any matter or the carrier allows."""
+        allowed = self.carrier.pace(w)
+        for k in ti.static(range(len(self.matters))):
+            allowed = ti.min(allowed, self.matters[k].pace(w))
+        return allowed
+
+    @ti.func
     def stale(self, u, t):
         """Whether a unit's lists, of any matter, must be rebuilt at time t (s)."""
         found = False
@@ -90,11 +101,11 @@ class Sequence:
         return found
 
     @ti.func
-    def worn(self, u):
-        """Whether a unit's lists may be stale, by a cheap upper bound on the displacements."""
+    def worn(self, u, t):
+        """Whether a unit's lists may be stale at time t (s), by cheap upper bounds on the displacements."""
         found = False
         for k in ti.static(range(len(self.matters))):
-            if self.matters[k].worn(u):
+            if self.matters[k].worn(u, t):
                 found = True
         return found
 

@@ -7,6 +7,7 @@ inner Verlet list, as in GROMACS (Páll et al. 2020, J. Chem. Phys. 153, 134110)
 import numpy as np
 import taichi as ti
 
+from solvers.grains.lists.boxes import Boxes
 from solvers.grains.state import Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
@@ -14,20 +15,31 @@ from solvers.space.axes import dot, named
 from solvers.tank.walls import Walls
 
 ROOM, MORE = (8, 3), (512, 16)  # of pairs and wall features: per grain, and more (all pairs of 40 grains)
+BESIDE = 1.5  # times as far for grains beside walls as for pairs: neighbours go on together, but past walls
 
 
 @ti.data_oriented
 class Candidates:
     """For each grain i of a unit the grains j > i of the unit, and all others, that may come as near as is listed.
 
-    They are all that had gaps up to `farthest` (m) when they were `seen`, and `known`, by world. In the step in which
-    they are renewed `renewed` is 1. Walls are left out where they move.
+    They are all that had gaps up to `farthest` (m), to walls BESIDE times that, when they were `seen`, and are `known`,
+    by world. In the step in which they are renewed `renewed` is 1. Walls are left out where they move.
     """
 
     def __init__(
-        self, arrays: State, units: Units, grains: Grains, walls: Walls, farthest: float, room: int, across: int
+        self,
+        arrays: State,
+        units: Units,
+        grains: Grains,
+        walls: Walls,
+        farthest: float,
+        room: int,
+        across: int,
+        boxes: Boxes | None,
+        reach: float,
     ):
         self.units, self.grains, self.walls, self.walled = units, grains, walls, not walls.moving
+        self.boxes, self.boxed = boxes, boxes is not None and units.whole
         own, world = arrays.under("candidates"), Axis("world", grains.worlds)
         capacity, walled = (room * (each * units.size + more) for each, more in zip(ROOM, MORE, strict=True))
         self.capacity, self.wall_capacity = capacity + 2 * room * across, walled if self.walled else 1
@@ -38,7 +50,9 @@ class Candidates:
         self.seen = own.reals((world, Axis("grain", grains.count)), *named("seen", grains.axes), kind=own.place)
         (self.known,) = own.integers((world,), "known")
         (self.renewed,) = own.integers((world,), "renewed", kept=False)
-        self.farthest = own.holding("farthest", np.array([farthest]), "one")
+        # Gaps (m) up to which pairs and grains beside walls are among them, and of grains more than two cells apart
+        gaps = np.array([farthest, BESIDE * farthest, 2.0 * (reach + farthest)])
+        self.farthest = own.holding("farthest", gaps, "number")
 
     def forget(self) -> None:
         """Have them sought anew before the next lists."""
@@ -46,15 +60,28 @@ class Candidates:
 
     @ti.func
     def outdated(self, w, margin):
-        """Whether a pair with a gap below `margin` (m) may be none of them: not known, or grains have moved too far."""
-        moved = ti.cast(0.0, self.grains.real)
-        for i in range(self.grains.mobile):
-            gone = [
-                ti.cast(self.grains.place[a][w, i] - self.seen[a][w, i], self.grains.real)
-                for a in ti.static(range(self.grains.axes))
-            ]
-            moved = ti.max(moved, dot(gone, gone))
-        return self.known[w] == 0 or 2.0 * ti.sqrt(moved) + margin > self.farthest[0]
+        """Whether a pair or a grain beside a wall, with a gap below `margin` (m), may be none of them.
+
+        Grains that were more than two cells apart had gaps of a cell and `farthest` at least.
+        """
+        old = self.known[w] == 0
+        if not old:
+            moved, nearing = ti.cast(0.0, self.grains.real), ti.cast(0.0, self.grains.real)
+            if ti.static(self.boxed):
+                moved, nearing = self.boxes.moves(w, self.seen, 2)
+            else:
+                for i in range(self.grains.mobile):
+                    gone = [
+                        ti.cast(self.grains.place[a][w, i] - self.seen[a][w, i], self.grains.real)
+                        for a in ti.static(range(self.grains.axes))
+                    ]
+                    moved = ti.max(moved, dot(gone, gone))
+                moved = ti.sqrt(moved)
+                nearing = 2.0 * moved
+            old = nearing + margin > self.farthest[0] or 2.0 * moved + margin > self.farthest[2]
+            if ti.static(self.walled):
+                old = old or moved + margin > self.farthest[1]
+        return old
 
     @ti.func
     def renew(self, w, margin):
@@ -119,7 +146,7 @@ class Candidates:
             shift = self.walls.shift(w, t)
             for i in range(start, end):
                 self.wall_first[u, i - start] = found
-                reach = g.reach[w, i] + self.farthest[0]
+                reach = g.reach[w, i] + self.farthest[1]
                 for feature in range(self.walls.features):
                     if self.walls.near(feature, shift, g.place[0][w, i], g.place[1][w, i], reach):
                         self.feature[u, ti.min(found, self.wall_capacity - 1)] = feature

@@ -8,13 +8,15 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
+from solvers.grains.lists.boxes import Boxes
 from solvers.grains.lists.candidates import Candidates
 from solvers.grains.lists.contact_list import ContactList
 from solvers.grains.lists.skin import Skin
+from solvers.grains.lists.wear import NEVER, Wear
 from solvers.grains.state import Grains
-from solvers.machine.state import Axis, State
+from solvers.machine.state import State
 from solvers.machine.units import Units
-from solvers.space.axes import dot, named
+from solvers.space.axes import dot
 from solvers.space.cells import Cells
 from solvers.tank.walls import Walls
 
@@ -22,14 +24,13 @@ LANES = 8  # pairs a pass of the force loop: two AVX2 registers of 64-bit number
 # Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more). A unit of a single
 # grain lists all of its neighbours (full list).
 ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
-NEVER = 1e30  # m, a displacement that makes the lists stale
 
 
 @ti.data_oriented
 class Neighbours:
     """The two contact lists of every unit, and when they are rebuilt.
 
-    Pairs are listed that may touch before the next rebuild, when a grain has moved by half the `skin`.
+    Pairs are listed that may touch before the next rebuild, when two have neared each other by the `skin` (`Wear`).
     """
 
     lanes = LANES
@@ -62,16 +63,14 @@ class Neighbours:
         self.contacts = ContactList(
             arrays.under("contacts"), units, room * contacts, 1, 0, laws, of_walls, more_contacts, more_fleeting
         )
-        own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
+        own = arrays.under("lists")
         self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
         self.walled = not units.single and not walls.moving  # whether candidates know the walls
-        if not units.single:
-            self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across)
         self.cells = Cells(arrays, grains, *walls.bounds, 2.0 * reach + skin.farthest)
-        self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
-        # `travel` (m) bounds the displacement of all grains since the lists were built, at the time `built_at` (s).
-        self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
-        self.built_at = own.holding("built_at", np.zeros(units.count), "unit", own.exact, kept=True)
+        boxes = Boxes(arrays, units, grains, self.cells) if skin.together else None
+        if not units.single:
+            self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across, boxes, reach)
+        self.wear = Wear(arrays, units, grains, walls, skin, boxes)
 
     def forget(self) -> None:
         """Empty the lists with all contact history, after grains were placed somewhere else."""
@@ -81,7 +80,7 @@ class Neighbours:
 
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
-        self.travel.fill(NEVER)
+        self.wear.expire()
         if not self.units.single:
             self.candidates.forget()
 
@@ -91,53 +90,19 @@ class Neighbours:
         anew = True
         self.skin.adapt(w)
         if ti.static(not self.units.single):
-            anew = self.candidates.renew(w, self.skin.margin(w))
+            anew = self.candidates.renew(w, self.skin.across(w))
         if anew:
             self.cells.sort_world(w)
 
     @ti.func
-    def worn(self, u):
-        """Whether a grain may have moved by more than half the skin, so that an unlisted pair may touch."""
-        return self.travel[u] > 0.5 * self.skin.width[self.units.world(u)]
+    def worn(self, u, t):
+        """Whether an unlisted contact is possible at time t (s) by bounds on what grains and parts have gone."""
+        return self.wear.worn(u, t)
 
     @ti.func
     def stale(self, u, t):
-        """Whether a unit's lists must be rebuilt at time t (s); if only the bound was too large, it is updated."""
-        old, skin = False, self.skin.width[self.units.world(u)]
-        if self.worn(u):
-            old = True
-            if self.travel[u] < 0.5 * NEVER:
-                # The running sum of speeds overestimates the displacement of shaken grains; use the actual one.
-                moved = self.moved(u, t)
-                if moved < 0.3 * skin:
-                    old = False
-                    self.travel[u] = moved
-        return old
-
-    @ti.func
-    def moved(self, u, t):
-        """Largest displacement (m) of a unit's grains since its lists were built, plus twice that of moving parts."""
-        w, farthest = self.units.world(u), ti.cast(0.0, self.grains.real)
-        for i in range(self.units.first(u), self.units.end(u)):
-            farthest = ti.max(farthest, self.way(w, i))
-        if ti.static(self.walls.moving):
-            farthest += 2.0 * self.walls.gone(w, self.built_at[u], t)
-        return farthest
-
-    @ti.func
-    def note_built(self, w, i):
-        """Store the position of a grain when the lists are built."""
-        for a in ti.static(range(self.grains.axes)):
-            self.built[a][w, i] = self.grains.place[a][w, i]
-
-    @ti.func
-    def way(self, w, i):
-        """Displacement (m) of a grain since the lists were built."""
-        gone = [
-            ti.cast(self.grains.place[a][w, i] - self.built[a][w, i], self.grains.real)
-            for a in ti.static(range(self.grains.axes))
-        ]
-        return ti.sqrt(dot(gone, gone))
+        """Whether a unit's lists must be rebuilt at time t (s)."""
+        return self.wear.stale(u, t)
 
     @ti.func
     def list_pairs(self, g: ti.template(), c: ti.template(), u, dt) -> ti.i32:
@@ -152,22 +117,31 @@ class Neighbours:
                     row = c.row(lower, upper, n)
                     for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
                         j = c.sorted[w, k]
-                        if j != i and self.near(g, w, i, j):
+                        if j != i and self.near(g, w, i, j, self.skin.margin(w)):
                             found = self.list_pair(g, u, found, i, j, ghost, dt)
             else:
                 for k in range(self.candidates.first[u, i - start], self.candidates.first[u, i - start + 1]):
                     j = self.candidates.mate[u, k]
-                    if self.near(g, w, i, j):
-                        found = self.list_pair(g, u, found, i, j, j if start <= j < end else ghost, dt)
+                    own = start <= j < end
+                    if self.near(g, w, i, j, self.margin(w, own)):
+                        found = self.list_pair(g, u, found, i, j, j if own else ghost, dt)
         for k in range(end - start, self.units.size + 1):
             self.pairs.first[u, k] = found
         return found
 
     @ti.func
-    def near(self, g: ti.template(), w, i, j):
-        """Whether two grains are near enough to be listed."""
+    def margin(self, w, own):
+        """The gap (m) up to which a pair is listed: of a unit's own grains, or of one and another's."""
+        margin = self.skin.margin(w)
+        if ti.static(not self.units.whole):
+            margin = ti.select(own, margin, self.skin.across(w))
+        return margin
+
+    @ti.func
+    def near(self, g: ti.template(), w, i, j, margin):
+        """Whether the gap of two grains is below a margin (m)."""
         apart = [g.place[a][w, i] - g.place[a][w, j] for a in ti.static(range(g.axes))]
-        far = g.reach[w, i] + self.skin.margin(w) + g.reach[w, j]
+        far = g.reach[w, i] + margin + g.reach[w, j]
         return dot(apart, apart) < far * far
 
     @ti.func
@@ -199,7 +173,7 @@ class Neighbours:
         shift = self.walls.shift(w, t)
         for i in range(start, end):
             self.contacts.first[u, i - start] = found
-            reach, begin, last = self.grains.reach[w, i] + self.skin.margin(w), 0, self.walls.features
+            reach, begin, last = self.grains.reach[w, i] + self.skin.beside(w), 0, self.walls.features
             if ti.static(self.walled):
                 begin, last = self.candidates.wall_first[u, i - start], self.candidates.wall_first[u, i - start + 1]
             for k in range(begin, last):
@@ -259,7 +233,7 @@ class Neighbours:
     @ti.func
     def list_all(self, u, t, dt):
         """Rebuild both neighbour lists; returns False, with the old lists in place, if they do not fit."""
-        w, known = self.units.world(u), True
+        known = True
         if ti.static(not self.units.single):
             known = self.candidates.found(self.grains, self.cells, u, t)
         self.pairs.set_aside(u)
@@ -271,10 +245,7 @@ class Neighbours:
         if fits:
             self.pairs.length[u], self.contacts.length[u] = pairs, contacts
             self.pairs.pad(u)
-            for i in range(self.units.first(u), self.units.end(u)):
-                self.note_built(w, i)
-            self.travel[u] = 0.0
-            self.built_at[u] = t
+            self.wear.begin(u, t)
         else:
             self.put_back(u)
         return fits
@@ -287,4 +258,4 @@ class Neighbours:
         """
         self.pairs.put_back(u)
         self.contacts.put_back(u)
-        self.travel[u] = NEVER
+        self.wear.travel[u] = NEVER

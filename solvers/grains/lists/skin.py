@@ -1,9 +1,10 @@
 """The skin of Verlet lists: how far apart pairs are listed that do not touch yet.
 
 A wide skin lists more pairs, a thin one must be built more often. The cost of a step, with p for the share by which it
-grows with the skin s (in diameters d) and b for building lists in units of a step, is 1 + p s + 2 b v Δt/(s d), since
-lists hold until the fastest grain has gone by s d/2 at its speed v. So the best is s = √(2 b/p) √(v Δt/d). (Chialvo &
-Debenedetti 1990, Comput. Phys. Commun. 60, 215, seek the best skin for molecules.)
+grows with the skin s (in diameters d) and b for building lists in units of a step, is 1 + p s + b u Δt/(s d), since
+lists hold until two neighbours have neared each other by s d, at a speed u; in flow that is 0.6 of the speed of the
+fastest grain. So the best is s = √(b/p) √(u Δt/d). (Chialvo & Debenedetti 1990, Comput. Phys. Commun. 60, 215, seek the
+best skin for molecules.)
 """
 
 from dataclasses import dataclass
@@ -14,10 +15,13 @@ import taichi as ti
 from solvers.grains.state import Grains
 from solvers.machine.state import State
 
-LEAST, MOST, FARTHEST = 0.05, 0.3, 0.8  # mean diameters
-KEEN = 2.0  # √(2 b/p): measured, a list costs some three steps, and a skin of d lengthens a step by 1.5
+LEAST, MOST, FARTHEST = 0.05, 0.25, 1.1  # mean diameters
+KEEN = 1.4  # of the root of v Δt/d for the fastest grain's speed v; measured, from 1.0 to 1.7 a step takes as long
 LEAST_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 LISTS = 7.0  # skins, where all are alike, up to which candidates are sought
+# Skins that a grain and a moving part may go until the lists are built anew: far, where it is known how neighbours near
+# each other; by a half, where two must be feared to come straight at each other.
+ASTRAY, APART = (2.0, 1.0), (0.5, 0.5)
 
 
 @dataclass(frozen=True)
@@ -44,14 +48,19 @@ def widths(scene, skin: float | None, single: bool) -> Widths:
 
 @ti.data_oriented
 class Skin:
-    """The present skin `width` (W,) m of each world, and the gap up to which its pairs are listed.
+    """The present skin `width` (W,) m of each world, and the gaps up to which its pairs and wall contacts are listed.
 
     Pairs with a liquid bridge, of at most `bridges` (m), are listed however thin the skin; and all `early` (m) before,
-    since a force begins in the kick in which two grains touch.
+    since a force begins in the kick in which two grains touch. Where what is known of grains is how they go `together`,
+    lists are good until one has gone by `astray` skins, or where parts are `moving`, a part by `parts`.
     """
 
-    def __init__(self, arrays: State, grains: Grains, widths: Widths, bridges: float, early: float):
+    def __init__(
+        self, arrays: State, grains: Grains, widths: Widths, bridges: float, early: float, together: bool, moving: bool
+    ):
         self.grains, self.widths, self.adapts = grains, widths, widths.most > widths.least
+        self.together, (self.astray, self.parts) = together, ASTRAY if together else APART
+        self.beside_walls = self.astray + (self.parts if moving else 0.0)
         beyond = widths.farthest - widths.most  # candidates serve several lists
         self.farthest = max(widths.farthest, bridges + beyond) + early
         own = arrays.under("lists")
@@ -61,8 +70,21 @@ class Skin:
 
     @ti.func
     def margin(self, w):
-        """The gap (m) up to which pairs of a world are listed."""
+        """The gap (m) up to which pairs are listed that one unit of a world has to itself."""
         return ti.max(self.width[w], self.bounds[3]) + self.bounds[4]
+
+    @ti.func
+    def across(self, w):
+        """The gap (m) up to which pairs of two units are listed, and all pairs are among the candidates.
+
+        What is known of grains that are no neighbours, or not of one unit, is only how far each of them has gone.
+        """
+        return ti.max(2.0 * self.astray * self.width[w], self.bounds[3]) + self.bounds[4]
+
+    @ti.func
+    def beside(self, w):
+        """The gap (m) up to which grains are listed with walls and moving parts."""
+        return self.beside_walls * self.width[w] + self.bounds[4]
 
     @ti.func
     def adapt(self, w):

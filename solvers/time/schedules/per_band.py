@@ -174,10 +174,14 @@ class PerBand:
         says = FINE
         if self.sequence.asked(u):
             says = ASKED
+        worn = self.sequence.worn(u, t)
         if self.sequence.stale(u, t):
             says = STALE
-        if ti.static(self.sequence.paced):  # noqa: SIM102
-            if 0 < due < stride or self.sequence.dawdles(self.clock.world(u), done, due, stride):
+        if ti.static(self.sequence.paced):
+            w = self.clock.world(u)
+            if 0 < due < stride or self.sequence.dawdles(w, done, due, stride):
+                says = STALE
+            if worn and self.sequence.rushes(w, stride):
                 says = STALE
         return says
 

@@ -34,10 +34,13 @@ class PerWorld:
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             step = self.clock.step[w]
             t, fresh = origin + step * base, True
+            worn = self.sequence.worn(w, t)
             stale = self.sequence.stale(w, t)
             if ti.static(self.sequence.paced):
                 due = target - step
                 if self.sequence.dawdles(w, step, due, self.clock.stride[w]):
+                    stale = True
+                if worn and self.sequence.rushes(w, self.clock.stride[w]):
                     stale = True
                 if stale or self.clock.stride[w] > due:
                     stale, self.clock.stride[w] = True, self.sequence.stride(w, step, due)
@@ -55,7 +58,8 @@ class PerWorld:
                 sound = self.take_step(w, self.clock.step[w], t, kick, dt)
                 self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
                 fresh = self.clock.step[w] + stride <= target
-                fresh = fresh and not self.sequence.worn(w) and not self.sequence.asked(w)
+                now = origin + self.clock.step[w] * base
+                fresh = fresh and not self.sequence.worn(w, now) and not self.sequence.asked(w)
                 if ti.static(self.sequence.paced):
                     fresh = fresh and self.clock.step[w] % BAR != 0
                 if not sound:

@@ -173,6 +173,7 @@ def test_sigterm_to_a_process_with_workers_ends_them_all_cleanly(workers, tmp_pa
         assert_summed_up(tmp_path / name)
 
 
+@pytest.mark.slow  # a killed painter is reported in `tests/lab/paint/test_many.py`
 def test_a_killed_worker_is_reported_in_one_sentence(workers, tmp_path):
     os.kill(workers_of(workers)[0], signal.SIGKILL)
     _, said = workers.communicate(timeout=60)

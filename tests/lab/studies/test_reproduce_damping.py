@@ -11,6 +11,7 @@ NATURAL = 2.0 * pi / 1.282  # rad/s, the preset's
 HEIGHT = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926  # m, GM
 
 
+@pytest.mark.slow
 def test_the_damping_of_a_small_peak_is_that_of_the_balance_of_power():
     """W GM k a = B1 ω φ at the natural frequency, and (8/3π) B2 ω² φ² of a quadratic one; waves carry off some more.
 

@@ -37,6 +37,7 @@ def test_damping_estimated_from_the_shape_brackets_the_measured_peak(peak):
             assert 0.95 * eddies[k] < reading < 1.05 * friction[k]
 
 
+@pytest.mark.slow
 def test_damping_usual_for_ships_is_too_large_for_the_section(peak):
     """Told as it is: 2 % of the critical damping leaves less roll than either instrument reads."""
     tests, (_, _, rolls) = peak

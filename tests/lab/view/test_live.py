@@ -83,6 +83,7 @@ def check_same_bits(folder, other):
             assert first.frames[name][:].tobytes() == second.frames[name][:].tobytes(), name
 
 
+@pytest.mark.slow  # as far as it was recorded, one is below
 def test_a_replay_has_the_same_bits(steered, tmp_path):
     again = replay(steered, tmp_path / "again", video=False, quiet=True)
     check_same_bits(steered, again.folder)

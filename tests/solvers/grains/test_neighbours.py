@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from solvers.grains.lists.neighbours import NEVER
+from solvers.grains.lists.skin import ASTRAY
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -89,7 +89,7 @@ def test_lists_equal_brute_force(clouded):
             assert np.all(pairs[:, 0] < pairs[:, 1])
             for name, rows, expected in (
                 ("pairs", pairs, brute_pairs(moved[w], radius[w], skin)),
-                ("walls", walls, brute_walls(moved[w], radius[w], skin)),
+                ("walls", walls, brute_walls(moved[w], radius[w], ASTRAY[0] * skin)),
             ):
                 assert expected, (name, w)
                 assert len(rows) == len(expected), (name, w)
@@ -136,6 +136,29 @@ def shaken(skin: float | None, room: int = 1) -> Simulation:
     return run
 
 
+def test_grains_that_go_together_keep_their_lists_for_long(clouded):
+    """All of a world fly one way: lists are good for ASTRAY skins, candidates until walls are met that were far off."""
+    (run, position), skin = clouded, SKIN
+    run.place(position)
+    run.advance(1)
+    wear, built, sought, went = run.grains.lists.wear, [], [], np.zeros(2)
+    for _ in range(70):
+        went += np.array([0.06, 0.08]) * skin
+        for a, field in enumerate(run.grains.grains.place):
+            whole = field.to_numpy()
+            whole[0, : position.shape[1]] = position[0, :, a] + went[a]
+            field.from_numpy(whole)
+        travel = wear.travel.to_numpy()
+        travel[0] += 0.1 * skin
+        wear.travel.from_numpy(travel)
+        run.advance(1)
+        built.append(wear.travel.to_numpy()[0] < 0.01 * skin)
+        sought.append(run.grains.lists.candidates.renewed.to_numpy()[0] if built[-1] else 0)
+    lasted = np.diff(np.flatnonzero(built))
+    assert np.all(lasted >= 0.85 * ASTRAY[0] / 0.1) and np.all(lasted <= ASTRAY[0] / 0.1 + 1)
+    assert np.flatnonzero(sought).tolist() == []  # 1.5 LISTS − 2 ASTRAY are 6.5 skins, 70 flights are 7
+
+
 def test_lists_equal_brute_force_while_grains_fly(clouded):
     """New lists after each of many flights of a third of the skin; cells are searched for a few of them.
 
@@ -152,16 +175,17 @@ def test_lists_equal_brute_force_while_grains_fly(clouded):
             whole = field.to_numpy()
             whole[:, : position.shape[1]] = position[:, :, a]
             field.from_numpy(whole)
-        run.grains.lists.travel.fill(NEVER)
+        run.grains.lists.wear.expire()
         run.advance(1)
         sought.append(run.grains.lists.candidates.renewed.to_numpy())
         for w in range(2):
             pairs, walls = listed(run.grains.lists.pairs, w), listed(run.grains.lists.contacts, w)
             assert set(map(tuple, pairs.tolist())) == brute_pairs(position[w], radius[w], skin)
-            assert set(map(tuple, walls.tolist())) == brute_walls(position[w], radius[w], skin)
+            assert set(map(tuple, walls.tolist())) == brute_walls(position[w], radius[w], ASTRAY[0] * skin)
     run.close()  # those that follow find their kernels
-    # More than three skins lie between two searches: ten flights of nearly a third each
-    assert np.flatnonzero(np.array(sought)[:, 0]).tolist() == [0, 10, 20]
+    # Two may have neared each other by LISTS − 2 ASTRAY = 3 skins, and no two do by more than 0.66 skins a flight
+    between = np.diff(np.flatnonzero(np.array(sought)[:, 0]))
+    assert len(between) > 1 and np.all(between >= 4)
     assert np.flatnonzero(np.array(sought)[:, 1]).tolist() == [0]
 
 
@@ -211,8 +235,8 @@ def test_the_skin_follows_the_speed_and_no_contact_is_missed(usual):
     run.close()
     diameter = 2.0 * run.scene.mean_radius
     np.testing.assert_array_equal(counted, expected)
-    assert np.all(skins[:, 1] > 1.5 * skins[0, 0])
-    assert np.all((skins >= 0.05 * diameter) & (skins <= 0.3 * diameter))
+    assert np.all(skins[:20, 1] > 1.2 * skins[:20, 0])
+    assert np.all((skins >= 0.05 * diameter) & (skins <= 0.25 * diameter))
     assert np.abs(positions[:60] - usual[0][:60]).max() < 1e-6 * RADIUS
 
 

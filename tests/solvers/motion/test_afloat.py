@@ -242,6 +242,7 @@ def test_cargo_that_does_not_move_is_part_of_the_rigid_body(run, voyage):
     assert voyage["roll"][later, TINY] == pytest.approx(wanted, abs=0.003 * np.ptp(wanted))
 
 
+@pytest.mark.slow  # the method itself is to rounding, above
 @pytest.mark.parametrize(("world", "until"), [(ALONE, CLOSE), (TINY, CLOSE), (LOSSY, 1.55)])
 def test_half_the_interval_gives_the_same_motion(voyage, finer, twin, world, until):
     """To 1e-5 of the roll: without cargo, with cargo that lies and with cargo that has shifted.

@@ -218,3 +218,47 @@ def test_grains_on_a_floor_that_drops_at_three_g_fall_freely(machine):
             if since < 0.05:
                 assert moved[1, 1] == pytest.approx(-1.5 * G * since**2, abs=1e-12)
     assert compared >= 8
+
+
+@pytest.mark.parametrize("schedule", ["per-world", *SLOW])
+def test_a_plate_finds_grains_that_lie_still(schedule):
+    """Nobody moves when the plate sets off, so that only its own way can tell that lists are old. A plate of 1 m/s that
+    meets an elastic grain at rest throws it ahead at 2 m/s, which it hands on to the next; then it meets it again.
+    """
+    plate = Part(((-0.05, 0.0), (-0.05, 0.1)), move=(0.06, 0.0), speed=1.0, acceleration=1e300)
+    elastic = material(dissipative_time=0.0, friction=0.0)
+    place = RADIUS * np.array([[[0.0, 20.0], [4.0, 20.0], [8.0, 20.0], [12.0, 20.0]]])
+    scene = Scene(
+        np.full((1, 4), RADIUS),
+        box(0.2, 0.12),
+        elastic,
+        elastic,
+        gravity=0.0,
+        start_speed=2.0,
+        parts=(plate,),
+        schedule=schedule,
+    )
+    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None)
+    run.advance(round(0.062 / run.dt))
+    state = run.snapshot()
+    run.close()
+    assert state["velocity"][0, -1] == pytest.approx([2.0, 0.0], abs=1e-2)
+    assert np.all(state["position"][0, :, 0] > -0.05 + 0.06 + 0.99 * RADIUS)
+
+
+@pytest.mark.parametrize("schedule", ["per-world", *SLOW])
+def test_grains_from_afar_meet(schedule):
+    """Two lone grains come at each other across cells with nothing in them, a third at a wall: none is missed."""
+    elastic = material(dissipative_time=0.0, friction=0.0)
+    place = np.array([[[-0.06, 0.05], [0.06, 0.05], [0.03, 0.09], [0.0, 0.02]]])
+    velocity = np.array([[[3.0, 0.0], [-2.0, 0.0], [0.0, 1.0], [0.0, 0.0]]])
+    scene = Scene(
+        np.full((1, 4), RADIUS), box(0.2, 0.12), elastic, elastic, gravity=0.0, start_speed=3.0, schedule=schedule
+    )
+    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None)
+    run.launch(velocity)
+    run.advance(round(0.035 / run.dt))
+    state = run.snapshot()
+    run.close()
+    expected = [[-2.0, 0.0], [3.0, 0.0], [0.0, -1.0], [0.0, 0.0]]
+    np.testing.assert_allclose(state["velocity"][0], expected, atol=1e-2)

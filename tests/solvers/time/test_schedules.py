@@ -140,13 +140,20 @@ def travelled(t: float) -> np.ndarray:
 
 
 def brute(run: Simulation, place: np.ndarray, radius: np.ndarray, t: float) -> tuple[set, set]:
-    """Pairs (i, j) of one world as its units should list them, and (grain, feature) at walls, nearer than the skin."""
-    skin, size = run.skin, run.grains.lists.units.size
+    """Pairs (i, j) of one world as its units should list them, and (grain, feature) at walls, nearer than is listed.
+
+    Where it is known how grains go together, lists are good for far ways of each. So what is not of one unit, whose
+    boxes it would be in, is listed from afar.
+    """
+    skin, size, reach = run.skin, run.grains.lists.units.size, run.grains.lists.skin
     others, sizes = np.concatenate([place, FIXED[:, :2]]), np.concatenate([radius, FIXED[:, 2]])
     away = np.linalg.norm(place[:, None] - others, axis=2)
-    first, second = np.nonzero(away < radius[:, None] + sizes + skin)
-    inside = (first // size == second // size) & (second < COUNT)
-    wanted = (first != second) & (~inside | (first < second))
+    owner = np.append(np.arange(COUNT) // size, np.full(len(FIXED), -1))
+    inside = owner[:COUNT, None] == owner
+    whole = run.grains.lists.units.whole
+    gap = np.where(inside | whole, skin, 2.0 * reach.astray * skin)
+    first, second = np.nonzero(away < radius[:, None] + sizes + gap)
+    wanted = (first != second) & (~inside[first, second] | (first < second))
     pairs = set(zip(first[wanted].tolist(), second[wanted].tolist(), strict=True))
 
     paddle = np.array(PADDLE.points) + travelled(t)
@@ -155,7 +162,7 @@ def brute(run: Simulation, place: np.ndarray, radius: np.ndarray, t: float) -> t
     distance = [segment_distance(place, a, b) for a, b in segments]
     distance = [gap for k, gap in enumerate(distance) if k not in run.scene.open_edges]
     distance += [np.linalg.norm(place - corner, axis=1) for corner in (*corners, *paddle)]
-    grain, feature = np.nonzero(np.stack(distance, axis=1) < (radius + skin)[:, None])
+    grain, feature = np.nonzero(np.stack(distance, axis=1) < (radius + reach.beside_walls * skin)[:, None])
     return pairs, set(zip(grain.tolist(), feature.tolist(), strict=True))
 
 
@@ -215,7 +222,7 @@ def test_per_grain_lists_follow_the_tanks_acceleration():
     outline = np.array([[-half, 0.0], [half, 0.0], [half, 0.03], [-half, 0.03]])
     scene = Scene(np.full((1, 2), radius), outline, grain, grain, gravity=0.0, motions=[(sway,)], schedule="per-grain")
     run = Simulation(scene, np.zeros((1, 2, 2)), THREADS, arch="cpu")
-    gap = 1.1 * run.skin
+    gap = 1.1 * run.grains.slack()
     run.place(np.array([[[half - radius, 0.01], [half - 3.0 * radius - gap, 0.01]]]))
     run.advance(round(1.5 * np.sqrt(2.0 * gap / push) / run.dt))
     speed = np.abs(run.snapshot()["velocity"]).max()
@@ -263,11 +270,13 @@ def test_growing_lists_change_nothing(told, schedule):
         found.place(start()[1])
         found.advance(EARLY)
         assert found.room == 1
-        margin = float(found.grains.lists.margin.to_numpy()[0])
-        found.grains.lists.margin.fill(margin + skin - SKIN)
+        usual = found.grains.lists.skin.bounds.to_numpy()
+        wider = usual.copy()
+        wider[-1] += skin - SKIN  # what all gaps are listed beyond the skin
+        found.grains.lists.skin.bounds.from_numpy(wider)
         found.grains.lists.expire()
         found.advance(1)
-        found.grains.lists.margin.fill(margin)
+        found.grains.lists.skin.bounds.from_numpy(usual)
         found.advance(100)
         ends.append(found.snapshot() | found.observe())
         assert np.all(found.clock.step.to_numpy() == EARLY + 101)

@@ -6,10 +6,10 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater
-from solvers.grains.lists.neighbours import NEVER, Neighbours
+from solvers.grains.lists.neighbours import Neighbours
+from solvers.grains.lists.wear import NEVER
 from solvers.grains.shapes.rules.rest import STILL
 from solvers.grains.shapes.support import Support
-from solvers.machine.state import Axis
 
 BENT_PLACES = 4  # initial entries per pair if an outline is non-convex
 
@@ -36,9 +36,7 @@ class ShapedNeighbours(Neighbours):
         for contacts in (self.pairs, self.contacts):
             # In a pair's first entry: whether its contacts must be searched for again.
             (contacts.wanted,) = contacts.arrays.vectors(contacts.each, "wanted", across=units.single)
-        own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
-        (self.built_angle,) = own.reals(place, "built_angle")
-        self.asking = own.holding("asking", np.zeros(units.count), "unit", ti.i32, kept=True)
+        self.asking = arrays.under("lists").holding("asking", np.zeros(units.count), "unit", ti.i32, kept=True)
 
     @ti.func
     def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
@@ -81,11 +79,11 @@ class ShapedNeighbours(Neighbours):
         for p in range(self.contacts.length[u]):
             if self.contacts.wanted[u, p][0] > 0.0:
                 i, feature = self.contacts.first_of(u, p), self.contacts.second_of(u, p)
-                count = self.rule.seek_wall(g, w, i, feature, shift, self.skin.margin(w), u)
+                count = self.rule.seek_wall(g, w, i, feature, shift, self.skin.beside(w), u)
                 fits = self.replace(self.contacts, u, p, i, feature, count, whole) and fits
         self.asking[u] = 0
         if not fits:
-            self.travel[u] = NEVER
+            self.wear.travel[u] = NEVER
             if whole:
                 self.put_back(u)
         elif whole and ti.static(self.rule.most > 1):
@@ -183,21 +181,6 @@ class ShapedNeighbours(Neighbours):
         self.rule.note(contacts, u, p, k)
 
     @ti.func
-    def note_built(self, w, i):
-        """Store the position and angle of a grain when the lists are built."""
-        for a in ti.static(range(self.grains.axes)):
-            self.built[a][w, i] = self.grains.place[a][w, i]
-        self.built_angle[w, i] = self.grains.angle[w, i]
-
-    @ti.func
-    def way(self, w, i):
-        """Upper bound on the displacement (m) of any point of a grain since the lists were built."""
-        dy = ti.cast(self.grains.y[w, i] - self.built[0][w, i], self.grains.real)
-        dz = ti.cast(self.grains.z[w, i] - self.built[1][w, i], self.grains.real)
-        turned = ti.abs(self.grains.angle[w, i] - self.built_angle[w, i])
-        return ti.sqrt(dy * dy + dz * dz) + turned * self.grains.reach[w, i]
-
-    @ti.func
     def lose(self, contacts: ti.template(), u, p):
         """Mark contact p as lost; its pair's contacts are searched for again before the next step."""
         if not self.rule.is_lost(contacts, u, p):
@@ -209,7 +192,7 @@ class ShapedNeighbours(Neighbours):
         """Have the contacts of p's pair searched for again before the next step."""
         contacts.wanted[u, self.head(contacts, u, p)][0] = 1.0
         if ti.static(self.units.single):
-            self.travel[u] = NEVER
+            self.wear.travel[u] = NEVER
         else:
             self.asking[u] = 1
 

@@ -4,7 +4,8 @@ import taichi as ti
 
 from solvers.grains.contacts import gathered
 from solvers.grains.laws.extremes import greater, lesser
-from solvers.grains.lists.neighbours import LANES, NEVER
+from solvers.grains.lists.neighbours import LANES
+from solvers.grains.lists.wear import NEVER
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 
