@@ -45,6 +45,7 @@ def test_grains_that_lie_in_each_other_are_refused_in_one_sentence(tmp_path):
         choose_beds(footage)[0].pressing(0)
 
 
+@pytest.mark.slow  # those of Hertz are found below
 def test_forces_found_again_are_those_of_the_run():
     loaded = load("tilting/quick", {"run.repeats": 1, "grains.count": 40, "run.threads": 1})
     scene, position = build(loaded.resolved)

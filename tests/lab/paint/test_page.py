@@ -64,7 +64,9 @@ def runs(tmp_path_factory):
     return {"tank": recorded(new("a")), "three": recorded(new("b"), worlds=3), "ship": recorded(new("c"), ship=True)}
 
 
-@pytest.mark.parametrize("what", [pytest.param("tank", marks=pytest.mark.slow), "three", "ship"])
+@pytest.mark.parametrize(
+    "what", [pytest.param("tank", marks=pytest.mark.slow), "three", pytest.param("ship", marks=pytest.mark.slow)]
+)
 def test_texts_lie_in_their_boxes_and_none_covers_another_or_the_stage(runs, what):
     initialise()
     with open_footage(runs[what]) as footage:

@@ -265,6 +265,7 @@ def test_a_damaged_checkpoint_is_refused_in_one_sentence(tmp_path):
     assert refused > 1500
 
 
+@pytest.mark.slow  # that a damaged row is told is in `tests/lab/recording/test_damage.py`
 def test_a_run_with_damage_after_its_checkpoint_continues_with_the_same_bits(done, tmp_path):
     """A flipped bit is written over where its row comes again; before the checkpoint it is said."""
     whole, cut, (rows, frames) = done

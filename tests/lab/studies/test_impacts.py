@@ -55,12 +55,12 @@ def in_the_solver(normal: str, tangential: str, e: float, integrator: str, parts
     [
         pytest.param("linear", "cundall-strack", "verlet", marks=pytest.mark.slow),
         pytest.param("hertz-viscoelastic", "cundall-strack", "verlet", marks=pytest.mark.slow),
-        ("hertz-viscoelastic", "mindlin", "verlet"),
+        pytest.param("hertz-viscoelastic", "mindlin", "verlet", marks=pytest.mark.slow),
         pytest.param("linear", "cundall-strack", "gear", marks=pytest.mark.slow),
         pytest.param("hertz-viscoelastic", "mindlin", "gear", marks=pytest.mark.slow),
     ],
 )
-# Impacts without loss are in `tests/solvers/grains/test_spring_history.py`, too.
+# Quick ones, without loss, are in `tests/solvers/grains/test_spring_history.py`, too.
 @pytest.mark.parametrize("e", [0.6, *(pytest.param(e, marks=pytest.mark.slow) for e in (1.0, 0.1))])
 def test_slip_after_an_impact_is_that_of_the_law(normal, tangential, integrator, e):
     """Within 1 % of the slip before, root mean square over the moments in a step at which contact begins, sticking and

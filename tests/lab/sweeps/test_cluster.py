@@ -93,6 +93,7 @@ def assert_equal(there, here):
         assert {path.name for path in mine.iterdir()} == {path.name for path in reference.iterdir()}
 
 
+@pytest.mark.slow
 def test_a_sweep_on_a_worker_equals_the_local_one_and_finished_points_are_not_sent(
     here, scheduler, in_this_thread, tmp_path, monkeypatch
 ):

@@ -45,6 +45,7 @@ def steered(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_a_bed_can_be_watched_while_it_settles(tmp_path, monkeypatch):
     """Its grains fall, and stand still at the end, a centre of mass ever lower."""
 

@@ -502,6 +502,7 @@ def test_intervals():
     assert vessel.limits == (-inf, inf)
 
 
+@pytest.mark.slow
 def test_changed_waves_act_from_then_on(run):
     """Twice as high and shorter, after half a second: as by the method of Runge and Kutta, waves changed then."""
     simulation, every = run.simulation, run.every
