@@ -271,9 +271,9 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     laws.wide = setting.vectors if laws.fit and discs_alone else 0
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
     grains = Grains(arrays, *given) if scene.shapes is None else ShapedGrains(arrays, scene.shapes, *given)
-    together = scene.shapes is None and not units.single
+    together = scene.shapes is None and units.whole
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
-    wide = widths(scene, setting.skin, units.single)
+    wide = widths(scene, setting.skin, units.single, together)
     skin = Skin(arrays, grains, wide, scene.longest_bridge, early, together, walls.moving)
     lists = scene.farthest_reach, skin, laws, moduli, setting.room
     if scene.shapes is None:

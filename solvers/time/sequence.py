@@ -81,7 +81,10 @@ class Sequence:
     @ti.func
     def rushes(self, w, stride):
         """Whether a world takes longer steps than it may now; looked at when its lists are."""
-        return stride > self.pace(w)
+        found = False
+        if stride > 1:  # else nothing is shorter
+            found = stride > self.pace(w)
+        return found
 
     @ti.func
     def pace(self, w):

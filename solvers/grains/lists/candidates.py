@@ -39,7 +39,7 @@ class Candidates:
         reach: float,
     ):
         self.units, self.grains, self.walls, self.walled = units, grains, walls, not walls.moving
-        self.boxes, self.boxed = boxes, boxes is not None and units.whole
+        self.boxes, self.boxed = boxes, boxes is not None
         own, world = arrays.under("candidates"), Axis("world", grains.worlds)
         capacity, walled = (room * (each * units.size + more) for each, more in zip(ROOM, MORE, strict=True))
         self.capacity, self.wall_capacity = capacity + 2 * room * across, walled if self.walled else 1

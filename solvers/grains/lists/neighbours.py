@@ -67,7 +67,7 @@ class Neighbours:
         self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
         self.walled = not units.single and not walls.moving  # whether candidates know the walls
         self.cells = Cells(arrays, grains, *walls.bounds, 2.0 * reach + skin.farthest)
-        boxes = Boxes(arrays, units, grains, self.cells) if skin.together else None
+        boxes = Boxes(arrays, grains, self.cells) if skin.together else None
         if not units.single:
             self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across, boxes, reach)
         self.wear = Wear(arrays, units, grains, walls, skin, boxes)
@@ -90,7 +90,7 @@ class Neighbours:
         anew = True
         self.skin.adapt(w)
         if ti.static(not self.units.single):
-            anew = self.candidates.renew(w, self.skin.across(w))
+            anew = self.candidates.renew(w, self.skin.apart(w))
         if anew:
             self.cells.sort_world(w)
 
@@ -117,31 +117,22 @@ class Neighbours:
                     row = c.row(lower, upper, n)
                     for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
                         j = c.sorted[w, k]
-                        if j != i and self.near(g, w, i, j, self.skin.margin(w)):
+                        if j != i and self.near(g, w, i, j):
                             found = self.list_pair(g, u, found, i, j, ghost, dt)
             else:
                 for k in range(self.candidates.first[u, i - start], self.candidates.first[u, i - start + 1]):
                     j = self.candidates.mate[u, k]
-                    own = start <= j < end
-                    if self.near(g, w, i, j, self.margin(w, own)):
-                        found = self.list_pair(g, u, found, i, j, j if own else ghost, dt)
+                    if self.near(g, w, i, j):
+                        found = self.list_pair(g, u, found, i, j, j if start <= j < end else ghost, dt)
         for k in range(end - start, self.units.size + 1):
             self.pairs.first[u, k] = found
         return found
 
     @ti.func
-    def margin(self, w, own):
-        """The gap (m) up to which a pair is listed: of a unit's own grains, or of one and another's."""
-        margin = self.skin.margin(w)
-        if ti.static(not self.units.whole):
-            margin = ti.select(own, margin, self.skin.across(w))
-        return margin
-
-    @ti.func
-    def near(self, g: ti.template(), w, i, j, margin):
-        """Whether the gap of two grains is below a margin (m)."""
+    def near(self, g: ti.template(), w, i, j):
+        """Whether two grains are near enough to be listed."""
         apart = [g.place[a][w, i] - g.place[a][w, j] for a in ti.static(range(g.axes))]
-        far = g.reach[w, i] + margin + g.reach[w, j]
+        far = g.reach[w, i] + self.skin.margin(w) + g.reach[w, j]
         return dot(apart, apart) < far * far
 
     @ti.func

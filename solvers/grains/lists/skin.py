@@ -15,13 +15,13 @@ import taichi as ti
 from solvers.grains.state import Grains
 from solvers.machine.state import State
 
-LEAST, MOST, FARTHEST = 0.05, 0.25, 1.1  # mean diameters
-KEEN = 1.4  # of the root of v Δt/d for the fastest grain's speed v; measured, from 1.0 to 1.7 a step takes as long
+# Skins from and to, and up to where candidates are sought, in mean diameters; the skin over √(v Δt/d) for the fastest
+# grain's speed v: where it is known how neighbours near each other, and where they may come straight at each other.
+TOGETHER, APART = (0.05, 0.25, 1.1, 1.4), (0.05, 0.3, 0.8, 2.0)
 LEAST_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 LISTS = 7.0  # skins, where all are alike, up to which candidates are sought
-# Skins that a grain and a moving part may go until the lists are built anew: far, where it is known how neighbours near
-# each other; by a half, where two must be feared to come straight at each other.
-ASTRAY, APART = (2.0, 1.0), (0.5, 0.5)
+# Skins that a grain, and a moving part, may go until the lists are built anew, in either case
+ASTRAY, STRAIGHT = (2.0, 1.0), (0.5, 0.5)
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,17 @@ class Widths:
     per_speed: float = 0.0
 
 
-def widths(scene, skin: float | None, single: bool) -> Widths:
-    """The skins of a scene, or only the one that is asked for (m); units of a `single` grain have no candidates."""
+def widths(scene, skin: float | None, single: bool, together: bool) -> Widths:
+    """The skins of a scene, or only the one that is asked for (m).
+
+    Units of a `single` grain have no candidates; `together` is whether it is known how neighbours near each other.
+    """
     diameter = 2.0 * scene.mean_radius
     if scene.shapes or single or skin:
-        least = skin or (LEAST_OF_CONVEX if scene.shapes and scene.shapes.convex else LEAST) * diameter
+        least = skin or (LEAST_OF_CONVEX if scene.shapes and scene.shapes.convex else APART[0]) * diameter
         return Widths(least, least, least if single else LISTS * least)
-    return Widths(LEAST * diameter, MOST * diameter, FARTHEST * diameter, KEEN**2 * diameter * scene.time_step())
+    least, most, farthest, keen = TOGETHER if together else APART
+    return Widths(least * diameter, most * diameter, farthest * diameter, keen**2 * diameter * scene.time_step())
 
 
 @ti.data_oriented
@@ -59,7 +63,7 @@ class Skin:
         self, arrays: State, grains: Grains, widths: Widths, bridges: float, early: float, together: bool, moving: bool
     ):
         self.grains, self.widths, self.adapts = grains, widths, widths.most > widths.least
-        self.together, (self.astray, self.parts) = together, ASTRAY if together else APART
+        self.together, (self.astray, self.parts) = together, ASTRAY if together else STRAIGHT
         self.beside_walls = self.astray + (self.parts if moving else 0.0)
         beyond = widths.farthest - widths.most  # candidates serve several lists
         self.farthest = max(widths.farthest, bridges + beyond) + early
@@ -70,14 +74,14 @@ class Skin:
 
     @ti.func
     def margin(self, w):
-        """The gap (m) up to which pairs are listed that one unit of a world has to itself."""
+        """The gap (m) up to which pairs of a world are listed."""
         return ti.max(self.width[w], self.bounds[3]) + self.bounds[4]
 
     @ti.func
-    def across(self, w):
-        """The gap (m) up to which pairs of two units are listed, and all pairs are among the candidates.
+    def apart(self, w):
+        """The gap (m) up to which all pairs are among the candidates when lists are built.
 
-        What is known of grains that are no neighbours, or not of one unit, is only how far each of them has gone.
+        Of grains that are no neighbours it is only known how far each of them has gone until these expire.
         """
         return ti.max(2.0 * self.astray * self.width[w], self.bounds[3]) + self.bounds[4]
 

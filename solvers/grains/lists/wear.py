@@ -2,7 +2,8 @@
 
 Neighbours in a bed that flows or is swayed go together: they near each other by a third of what one must fear who knows
 the fastest grain alone. So grains are compared with those in neighbouring cells, by `Boxes` round displacements. Two
-that were not in such cells are farther apart; for them, and for walls, it suffices how far each has gone.
+that were not in such cells are farther apart; for them, and for walls, it suffices how far each has gone. It suffices,
+too, for outlines, which turn, and for bands, which would wait for each other at each look: by boxes they gain nothing.
 """
 
 import numpy as np
@@ -17,7 +18,8 @@ from solvers.space.axes import dot, named
 from solvers.tank.walls import Walls
 
 NEVER = 1e30  # m, a displacement that makes the lists stale
-LITTLE = 0.15  # of what lists bear: with less of it left they are built anew rather than looked at again
+# Of what lists bear: with less of it left they are built anew rather than looked at again, with boxes and without
+LITTLE = {True: 0.15, False: 0.4}
 
 
 @ti.data_oriented
@@ -31,6 +33,7 @@ class Wear:
     def __init__(self, arrays: State, units: Units, grains: Grains, walls: Walls, skin: Skin, boxes: Boxes | None):
         self.units, self.grains, self.walls, self.skin = units, grains, walls, skin
         self.boxes, self.boxed = boxes, boxes is not None
+        self.little = LITTLE[self.boxed]
         own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
         self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
         if grains.shaped:
@@ -93,11 +96,11 @@ class Wear:
         """
         skin = self.skin.width[self.units.world(u)]
         left = ti.min(self.skin.astray * skin - moved, 0.5 * (skin - nearing))
-        enough = left > LITTLE * 0.5 * skin
+        enough = left > self.little * 0.5 * skin
         self.travel[u], self.bound[u] = moved, moved + left
         if ti.static(self.walls.moving):
             left = self.skin.parts * skin - gone
-            enough = enough and left > LITTLE * self.skin.parts * skin
+            enough = enough and left > self.little * self.skin.parts * skin
             self.due[u] = t + ti.cast(left, self.grains.exact) / self.fastest[0]
         return enough
 
@@ -107,7 +110,7 @@ class Wear:
         moved = ti.cast(0.0, self.grains.real)
         nearing = moved
         if ti.static(self.boxed):
-            moved, nearing = self.boxes.moves(u, self.built, 1)
+            moved, nearing = self.boxes.moves(self.units.world(u), self.built, 1)
         else:
             moved = self.moved(u)
             nearing = 2.0 * moved

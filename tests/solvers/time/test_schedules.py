@@ -140,20 +140,13 @@ def travelled(t: float) -> np.ndarray:
 
 
 def brute(run: Simulation, place: np.ndarray, radius: np.ndarray, t: float) -> tuple[set, set]:
-    """Pairs (i, j) of one world as its units should list them, and (grain, feature) at walls, nearer than is listed.
-
-    Where it is known how grains go together, lists are good for far ways of each. So what is not of one unit, whose
-    boxes it would be in, is listed from afar.
-    """
-    skin, size, reach = run.skin, run.grains.lists.units.size, run.grains.lists.skin
+    """Pairs (i, j) of one world as its units should list them, and (grain, feature) at walls, nearer than is listed."""
+    skin, size, wide = run.skin, run.grains.lists.units.size, run.grains.lists.skin.beside_walls
     others, sizes = np.concatenate([place, FIXED[:, :2]]), np.concatenate([radius, FIXED[:, 2]])
     away = np.linalg.norm(place[:, None] - others, axis=2)
-    owner = np.append(np.arange(COUNT) // size, np.full(len(FIXED), -1))
-    inside = owner[:COUNT, None] == owner
-    whole = run.grains.lists.units.whole
-    gap = np.where(inside | whole, skin, 2.0 * reach.astray * skin)
-    first, second = np.nonzero(away < radius[:, None] + sizes + gap)
-    wanted = (first != second) & (~inside[first, second] | (first < second))
+    first, second = np.nonzero(away < radius[:, None] + sizes + skin)
+    inside = (first // size == second // size) & (second < COUNT)
+    wanted = (first != second) & (~inside | (first < second))
     pairs = set(zip(first[wanted].tolist(), second[wanted].tolist(), strict=True))
 
     paddle = np.array(PADDLE.points) + travelled(t)
@@ -162,7 +155,7 @@ def brute(run: Simulation, place: np.ndarray, radius: np.ndarray, t: float) -> t
     distance = [segment_distance(place, a, b) for a, b in segments]
     distance = [gap for k, gap in enumerate(distance) if k not in run.scene.open_edges]
     distance += [np.linalg.norm(place - corner, axis=1) for corner in (*corners, *paddle)]
-    grain, feature = np.nonzero(np.stack(distance, axis=1) < (radius + reach.beside_walls * skin)[:, None])
+    grain, feature = np.nonzero(np.stack(distance, axis=1) < (radius + wide * skin)[:, None])
     return pairs, set(zip(grain.tolist(), feature.tolist(), strict=True))
 
 
