@@ -88,7 +88,7 @@ class Skin:
     @ti.func
     def beside(self, w):
         """The gap (m) up to which grains are listed with walls and moving parts."""
-        return self.beside_walls * self.width[w] + self.bounds[4]
+        return ti.max(self.beside_walls * self.width[w], self.bounds[3]) + self.bounds[4]
 
     @ti.func
     def adapt(self, w):
