@@ -8,7 +8,7 @@ import numpy as np
 from lab.report.page import Page
 from lab.studies.bench.accuracy.settled import settled_scene
 from lab.studies.bench.speed.workers import in_turn, worked
-from solvers.grains.lists.skin import LEAST, MOST
+from solvers.grains.lists.skin import TOGETHER
 from solvers.simulation import Simulation
 
 BY_SPEED = 0.0  # no fixed skin but the default one
@@ -19,9 +19,10 @@ TURNS, STEPS = 9, 6000
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     still, swayed = _speeds(0.0), _speeds(0.5)
+    least, most, *_ = TOGETHER
     page.section("Skin of the neighbour lists")
     page.say(f"""Grain-steps a second of processor time with a fixed skin, relative to the default, which goes with the
-        root of the speed of the fastest grain from {LEAST:g} to {MOST:g} mean diameters: medians of the ratios of
+        root of the speed of the fastest grain from {least:g} to {most:g} mean diameters: medians of the ratios of
         {TURNS} runs in turn, one core, on a bed at rest and on one thrown against the wall at 0.5 m/s. The forces are
         the same.""")
     rows = [[f"{skin:g}", f"{still[skin]:.2f}", f"{swayed[skin]:.2f}"] for skin in SKINS if skin != BY_SPEED]
