@@ -181,8 +181,9 @@ class PerBand:
             w = self.clock.world(u)
             if 0 < due < stride or self.sequence.dawdles(w, done, due, stride):
                 says = STALE
-            if worn and self.sequence.rushes(w, stride):
-                says = STALE
+            if worn:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
+                if self.sequence.rushes(w, stride):
+                    says = STALE
         return says
 
     @ti.func
