@@ -81,10 +81,7 @@ class Sequence:
     @ti.func
     def rushes(self, w, stride):
         """Whether a world takes longer steps than it may now; looked at when its lists are."""
-        found = False
-        if stride > 1:  # else nothing is shorter
-            found = stride > self.pace(w)
-        return found
+        return stride > self.pace(w)
 
     @ti.func
     def pace(self, w):

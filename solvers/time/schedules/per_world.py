@@ -40,9 +40,8 @@ class PerWorld:
                 due = target - step
                 if self.sequence.dawdles(w, step, due, self.clock.stride[w]):
                     stale = True
-                if worn:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
-                    if self.sequence.rushes(w, self.clock.stride[w]):
-                        stale = True
+                if worn and self.sequence.rushes(w, self.clock.stride[w]):
+                    stale = True
                 if stale or self.clock.stride[w] > due:
                     stale, self.clock.stride[w] = True, self.sequence.stride(w, step, due)
                 stride = self.clock.stride[w]
