@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from solvers.grains.lists.skin import ASTRAY
+from solvers.grains.lists.candidates import BESIDE
+from solvers.grains.lists.skin import ASTRAY, LISTS
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -137,12 +138,15 @@ def shaken(skin: float | None, room: int = 1) -> Simulation:
 
 
 def test_grains_that_go_together_keep_their_lists_for_long(clouded):
-    """All of a world fly one way: lists are good for ASTRAY skins, candidates until walls are met that were far off."""
+    """All of a world fly one way: lists are good for ASTRAY skins, candidates until walls are met that were far off.
+
+    Walls up to BESIDE LISTS skins away are among these, and lists ask for all up to 2 ASTRAY skins.
+    """
     (run, position), skin = clouded, SKIN
     run.place(position)
     run.advance(1)
-    wear, built, sought, went = run.grains.lists.wear, [], [], np.zeros(2)
-    for _ in range(70):
+    wear, sought, went = run.grains.lists.wear, {}, np.zeros(2)
+    for flight in range(1, 101):
         went += np.array([0.06, 0.08]) * skin
         for a, field in enumerate(run.grains.grains.place):
             whole = field.to_numpy()
@@ -152,11 +156,13 @@ def test_grains_that_go_together_keep_their_lists_for_long(clouded):
         travel[0] += 0.1 * skin
         wear.travel.from_numpy(travel)
         run.advance(1)
-        built.append(wear.travel.to_numpy()[0] < 0.01 * skin)
-        sought.append(run.grains.lists.candidates.renewed.to_numpy()[0] if built[-1] else 0)
-    lasted = np.diff(np.flatnonzero(built))
-    assert np.all(lasted >= 0.85 * ASTRAY[0] / 0.1) and np.all(lasted <= ASTRAY[0] / 0.1 + 1)
-    assert np.flatnonzero(sought).tolist() == []  # 1.5 LISTS − 2 ASTRAY are 6.5 skins, 70 flights are 7
+        if wear.travel.to_numpy()[0] < 0.01 * skin:
+            sought[flight] = bool(run.grains.lists.candidates.renewed.to_numpy()[0])
+    lasted = np.diff([0, *sought])
+    assert len(lasted) > 3 and np.all(lasted >= 0.85 * ASTRAY[0] / 0.1) and np.all(lasted <= ASTRAY[0] / 0.1 + 1)
+    first = next(flight for flight, anew in sought.items() if anew)
+    before = max(flight for flight in sought if flight < first)
+    assert 0.1 * before < BESIDE * LISTS - 2.0 * ASTRAY[0] < 0.1 * first
 
 
 def test_lists_equal_brute_force_while_grains_fly(clouded):
@@ -235,7 +241,7 @@ def test_the_skin_follows_the_speed_and_no_contact_is_missed(usual):
     run.close()
     diameter = 2.0 * run.scene.mean_radius
     np.testing.assert_array_equal(counted, expected)
-    assert np.all(skins[:20, 1] > 1.2 * skins[:20, 0])
+    assert np.all(skins[:15, 1] > 1.5 * skins[:15, 0])  # then the gas has lost its speed
     assert np.all((skins >= 0.05 * diameter) & (skins <= 0.25 * diameter))
     assert np.abs(positions[:60] - usual[0][:60]).max() < 1e-6 * RADIUS
 
