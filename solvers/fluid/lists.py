@@ -133,7 +133,7 @@ class Lists:
                 for a in ti.static(range(p.axes)):
                     p.built[a][b, lane] = p.place[a][b, lane]
         self.near.first[u, end - first], self.beside.first[u, (end - first) * self.pieces] = found, walls
-        if found > self.near.capacity or walls > self.beside.capacity:
+        if found >= self.near.capacity or walls >= self.beside.capacity:  # the last place is written to in passing
             fits = False
         if ti.static(p.dry > 0):
             first, end = self.shares.dry(u)
@@ -143,7 +143,7 @@ class Lists:
                 for image in ti.static(self.images):
                     found = self.search(u, b, reach, found, self.facing, image, False)
             self.facing.first[u, end - first] = found
-            fits = fits and found <= self.facing.capacity
+            fits = fits and found < self.facing.capacity
             if ti.static(self.bodies.moving):
                 self.bodies.note_built(u)
         self.travel[u], self.skin[u] = 0.0, skin

@@ -108,7 +108,8 @@ class Candidates:
     def seek(self, g: ti.template(), c: ti.template(), u, t):
         """Seek those of a unit among sorted grains; False without room.
 
-        What a grain has near it comes at random: without branches the processor guesses nothing wrong.
+        What a grain has near it comes at random: without branches the processor guesses nothing wrong. So the last
+        place is for what is looked at after all are found.
         """
         w, found = self.units.world(u), 0
         start, end, last = self.units.first(u), self.units.end(u), self.capacity - 1
@@ -128,7 +129,7 @@ class Candidates:
                     found += self.mine(i, j, start, end) & ti.cast(dot(apart, apart) < far * far, ti.i32)
         for k in range(end - start, self.units.size + 1):
             self.first[u, k] = found
-        return found <= self.capacity and self.seek_walls(g, u, t)
+        return found <= last and self.seek_walls(g, u, t)
 
     @ti.func
     def mine(self, i, j, start, end):

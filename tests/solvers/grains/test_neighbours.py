@@ -1,15 +1,18 @@
 """Neighbour lists against brute force, contact history across rebuilds, and lists that outgrow their arrays."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from solvers.grains.lists import candidates
 from solvers.grains.lists.candidates import BESIDE
 from solvers.grains.lists.skin import ASTRAY, LISTS
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from tests.oracles.scenes import box, material
+from tests.oracles.scenes import box, material, simulation
 
 RADIUS = 3e-3
 # A hopper with a ledge: slanted walls, a reflex corner, corners of many angles.
@@ -193,6 +196,22 @@ def test_lists_equal_brute_force_while_grains_fly(clouded):
     between = np.diff(np.flatnonzero(np.array(sought)[:, 0]))
     assert len(between) > 1 and np.all(between >= 4)
     assert np.flatnonzero(np.array(sought)[:, 1]).tolist() == [0]
+
+
+def test_candidates_that_fill_their_room_are_all_kept(monkeypatch):
+    """Nothing that is looked at after the last pair is found is written over it."""
+    places = RADIUS * np.array([[[2.1 * (k % 6) - 5.25, 1.05 + 2.1 * (k // 6)] for k in reversed(range(12))]])
+    found = []
+    for _ in range(2):
+        run = simulation(places, RADIUS, box(0.05, 0.05), schedule="per-world")
+        run.advance(1)
+        seen = run.grains.lists.candidates
+        first, mate = seen.first.to_numpy()[0], seen.mate.to_numpy()[0]
+        found.append([set(mate[a:b].tolist()) for a, b in pairwise(first)])
+        monkeypatch.setattr(candidates, "ROOM", (0, candidates.ROOM[1]))
+        monkeypatch.setattr(candidates, "MORE", (int(first[-1]), candidates.MORE[1]))
+        run.close()
+    assert found[1] == found[0] and sum(map(len, found[0])) > 20
 
 
 def brute_census(position: np.ndarray, radius: np.ndarray) -> int:
