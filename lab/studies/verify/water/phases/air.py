@@ -64,7 +64,7 @@ def air_mass(run: Simulation) -> float:
 
 def still(fast: bool) -> Found:
     """Twenty seconds of rest at two spacings; the last decides."""
-    rows, duration = (ROWS[:1], 4.0) if fast else (ROWS, REST)
+    rows, duration = (ROWS[1:], 4.0) if fast else (ROWS, REST)
     found = [rested(count, duration) for count in rows]
     off, pressed, stirred = found[-1]
     lines = [
