@@ -15,7 +15,7 @@ from lab.studies.verify.scenes import ACETATE, Setup, at_level, grain
 
 PICTURES = (
     *("errors", "chung-ooi-1-2", "chung-ooi-5", "restitution", "oblique-mindlin", "orders"),
-    *("water-wave", "water-channel", "water-drop"),
+    *("water-wave", "water-channel", "water-drop", "water-bubble"),
 )
 
 
