@@ -64,8 +64,8 @@ class Simulation:
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = max(stretch, scene.soft_stride) if alone else 1
-        self.steps, self.room, self.vectors, self.among = 0, 1, wide.lanes(), worlds  # `among`: worlds at the start
-        self.skin = skin
+        self.vectors = wide.lanes_of_outlines(scene.precision) if scene.shapes else wide.lanes()
+        self.steps, self.room, self.among, self.skin = 0, 1, worlds, skin  # `among`: worlds at the start
         self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
@@ -302,9 +302,8 @@ class Simulation:
     def state(self) -> dict[str, np.ndarray]:
         """The complete state, from which `restore` continues bit for bit."""
         cut = self.units_a_world, list(SCHEDULES).index(self.schedule_name), self.vectors, self.among
-        numbers = np.array([self.steps, self.room, self.unkicked, self.observed, *cut])
-        own = {"numbers": numbers, "origin": np.array(self.origin)}
-        return own | self._of_matters() | self.means | self.arrays.read()
+        own = {"numbers": np.array([self.steps, self.room, self.unkicked, self.observed, *cut])}
+        return own | {"origin": np.array(self.origin)} | self._of_matters() | self.means | self.arrays.read()
 
     def axes(self) -> dict[str, Axes]:
         """The axes of all that `state` tells, by its names."""
@@ -318,6 +317,7 @@ class Simulation:
         """Restore what `state` returned in a simulation of the same scene, on whatever processor."""
         self.steps, room, self.unkicked, self.observed, *cut = (int(number) for number in state["numbers"])
         units, schedule, vectors, among = (*cut, self.vectors, self.among)[:4]  # older states lack the last
+        vectors = wide.told_of_outlines(vectors) if self.scene.shapes else vectors
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
         if (room, units, vectors, among) != (self.room, self.units_a_world, self.vectors, self.among):
             self.arrays.release()

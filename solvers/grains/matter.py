@@ -24,6 +24,7 @@ from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import Grains
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
+from solvers.machine.units import Units
 from solvers.motion.carrier import per_metre
 from solvers.ship.body import Body
 from solvers.space.axes import dot
@@ -266,9 +267,7 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     given = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
     integrator = INTEGRATORS[scene.integrator]()
     laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
-    # Kernels that hold water's as well cannot be on real vectors: Taichi aborts.
-    discs_alone = scene.shapes is None and not units.single and scene.water is None
-    laws.wide = setting.vectors if laws.fit and discs_alone else 0
+    laws.wide = setting.vectors if laws.fit and bears_vectors(scene, units) else 0
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
     grains = Grains(arrays, *given) if scene.shapes is None else ShapedGrains(arrays, scene.shapes, *given)
     together = scene.shapes is None and units.whole
@@ -280,8 +279,17 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
         neighbours = Neighbours(arrays, units, grains, walls, *lists)
         contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
     else:
-        rule = RULES[scene.shapes.contact](arrays, units, walls, scene.shapes)
+        rule = RULES[scene.shapes.contact](arrays, units, walls, scene.shapes, laws.wide)
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
     mover = Mover(arrays, units, grains, integrator, setting.carrier.rotating)
     return GrainMatter(scene, setting, load, grains, neighbours, contacts, mover)
+
+
+def bears_vectors(scene, units: Units) -> bool:
+    """Whether blocks of pairs can be on real vectors: not beside water, for which Taichi aborts.
+
+    Of outlines only convex ones have blocks of several contacts, and the shared area is computed one by one.
+    """
+    outlined = scene.shapes is None or (scene.shapes.convex and scene.shapes.contact != "area")
+    return outlined and not units.single and scene.water is None

@@ -69,7 +69,8 @@ class ShapedGrains(Grains):
     @ti.func
     def apart(self, w, i, j):
         """Vector (m) from the centre of grain j to that of grain i."""
-        return ti.cast(ti.Vector(self.between(w, i, j)), self.real)
+        way = self.between(w, i, j)
+        return ti.Vector([ti.cast(way[a], self.real) for a in ti.static(range(self.axes))])
 
 
 def with_disc(shapes: Shapes) -> list[Contour]:

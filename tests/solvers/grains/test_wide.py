@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from solvers.grains.shapes.given import Shapes
 from solvers.machine import wide
 from solvers.motion import Roll, Sway, Tilt
 from solvers.ship.body import Body
@@ -17,9 +18,11 @@ from solvers.ship.section import box as hull
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import regular
+from tests.oracles.outlines import ellipse
 from tests.oracles.scenes import box, material, simulation
 
 RADIUS, WIDE, STEPS = 1.5e-3, 24e-3, 1500
+EGG = ellipse(1.12, 0.9)
 LINING = np.array([[y, 0.0, 1e-3] for y in np.arange(-WIDE / 2, WIDE / 2 + 1e-4, 3e-3)])
 OTHERS = [
     {"tangential": "mindlin"},
@@ -39,7 +42,7 @@ def thrown(lanes, threads=1, **models):
     """What two worlds of 42 grains thrown at each other and at a rough floor have become."""
     run = throw(lanes, threads, **models)
     assert run.wide == (lanes > 0)
-    assert run.grains.lists.pairs.lanes == (lanes or 8)
+    assert run.grains.lists.pairs.lanes == ((wide.OF_OUTLINES if "rule" in models else lanes) if lanes else 8)
     return ended(run, STEPS)
 
 
@@ -60,8 +63,11 @@ def ended(run, steps):
     return found
 
 
-def throw(lanes, threads=1, **models):
-    """The grains as they are thrown, on a processor for which blocks on real vectors have so many lanes, or none do."""
+def throw(lanes, threads=1, rule=None, **models):
+    """The grains as they are thrown, on a processor for which blocks on real vectors have so many lanes, or none do.
+
+    With a `rule` of contact they are ellipses, else discs.
+    """
     patched = pytest.MonkeyPatch()
     patched.setattr(wide, "lanes", lambda: lanes)
     row, column = np.divmod(np.arange(42), 7)
@@ -71,6 +77,10 @@ def throw(lanes, threads=1, **models):
     velocity[..., 1] -= 0.3
     grain = material(rolling_friction=0.1, shear_damping=20.0, **WET)
     radius = RADIUS * rng.uniform(0.9, 1.0, len(place))
+    if rule:
+        angle = np.full((2, len(place)), rng.uniform(-np.pi, np.pi, len(place)))
+        models["shapes"] = Shapes((EGG,), np.zeros((2, len(place)), dtype=int), angle, rule, 120)
+        radius = radius / EGG.bounding_radius
     run = simulation(
         np.stack([place, place]), radius, box(WIDE, 40e-3), grain, velocity=velocity, spin=spin, threads=threads,
         fixed=LINING, stiffness_scale=1e-2, gravity=100.0, **models,
@@ -164,3 +174,68 @@ def test_a_state_goes_on_with_the_same_bits_on_another_kind_of_processor(lanes, 
     alike = throw(lanes, tangential="mindlin", cohesion=cohesion)
     alike.restore(state | {"numbers": state["numbers"][:-1]})
     np.testing.assert_array_equal(ended(alike, rest)["position"], found["position"])
+
+
+@pytest.fixture(scope="module", params=["continuous", "nodes"])
+def outlined(request):
+    """What outlines thrown so have become on real vectors, by which rule, and their state halfway."""
+    run = throw(8, rule=request.param, tangential="mindlin")
+    assert run.wide
+    assert run.grains.lists.pairs.lanes == wide.OF_OUTLINES
+    run.advance(STEPS // 2)
+    state = run.state()
+    return request.param, ended(run, STEPS - STEPS // 2), state
+
+
+@pytest.mark.slow
+def test_real_vectors_move_outlines_as_scalars_do(outlined):
+    rule, found, _ = outlined
+    agree(thrown(0, rule=rule, tangential="mindlin"), found)
+
+
+@pytest.mark.slow
+def test_real_vectors_of_outlines_give_the_same_bits_on_two_threads(outlined):
+    rule, found, _ = outlined
+    for name, values in ended(throw(8, 2, rule=rule, tangential="mindlin"), STEPS).items():
+        np.testing.assert_array_equal(values, found[name], err_msg=name)
+
+
+@pytest.mark.slow
+def test_a_state_of_outlines_goes_on_with_the_same_bits_where_there_are_no_vectors(outlined):
+    rule, found, state = outlined
+    elsewhere = throw(0, rule=rule, tangential="mindlin")
+    elsewhere.restore(state)
+    assert elsewhere.wide
+    for name, values in ended(elsewhere, STEPS - STEPS // 2).items():
+        np.testing.assert_array_equal(values, found[name], err_msg=name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rule", ["continuous", "nodes"])
+@pytest.mark.parametrize("told", [0, 8, 16])
+def test_a_state_of_outlines_on_scalars_goes_on_on_scalars(rule, told):
+    """Older ones tell the lanes that discs would have had."""
+    run = throw(0, rule=rule, tangential="mindlin")
+    run.advance(STEPS // 2)
+    state, rest = run.state(), STEPS - STEPS // 2
+    found = ended(run, rest)
+    state["numbers"][6] = told
+    elsewhere = throw(8, rule=rule, tangential="mindlin")
+    elsewhere.restore(state)
+    assert not elsewhere.wide
+    for name, values in ended(elsewhere, rest).items():
+        np.testing.assert_array_equal(values, found[name], err_msg=name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("models", OTHERS[:4], ids=str)
+def test_every_law_between_outlines_is_right_on_real_vectors(models):
+    agree(*(thrown(lanes, rule="continuous", **models) for lanes in (0, 8)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("changes", [{"rule": "area"}, {"rule": "continuous", "precision": "mixed"}], ids=str)
+def test_other_outlines_are_not_on_real_vectors(changes):
+    run = throw(8, tangential="mindlin", **changes)
+    assert not run.wide
+    assert np.isfinite(ended(run, STEPS)["position"]).all()

@@ -36,7 +36,7 @@ class Area(Single):
     wall_memory = ("window", "edge_first", "edges", "from_y", "from_z", "from_far")
     pair_memory = ("window", "edge_first", "edges", "from_y", "from_z", "from_first", "from_second")
 
-    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
+    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes, wide: int = 0):
         outlines = with_disc(shapes)
         self.tables, self.walls = Tables(arrays, outlines), SeenWalls(arrays, walls)
         self.rest = Rest(arrays, units, bent=False)

@@ -6,6 +6,7 @@ from solvers.grains.contacts import Contacts, gathered
 from solvers.grains.laws.chosen import PAIR, WALL
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, SURE
+from solvers.machine.wide import enter, entry, minus
 
 
 @ti.data_oriented
@@ -31,9 +32,13 @@ class ShapedContacts(Contacts):
         for block in range(pairs.blocks(u)):
             i, j = self.in_order(pairs, u, block)
             if not self.idle(g, pairs, i, j, u, block):
-                if self.rest.carry(g, pairs, i, j, u, block) > 0.0:
+                far_y, far_z, overlap, ny, nz, py, pz, asked = self.rest.carry(g, pairs, i, j, u, block)
+                if asked.sum() > 0.0:
+                    self.rest.lay_out(u, [overlap, ny, nz, py, pz], asked)
                     self.ask(g, pairs, u, block, dt)
-                self.block_forces(g, pairs, i, j, u, block, load, dt)
+                    overlap, ny, nz, py, pz = self.rest.present(self.rest.now, u)
+                now = [overlap, ny, nz, py, pz]
+                self.block_forces(g, pairs, i, j, u, block, far_y, far_z, now, load, dt)
         if ti.static(self.lined):
             self.load.book(u, self.lining, load, dt)
 
@@ -64,7 +69,7 @@ class ShapedContacts(Contacts):
                 listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
                 i, j = ti.min(listed, mate), ti.max(listed, mate)
                 if ti.static(hasattr(pairs, SURE)):
-                    pairs.sure[u, p][0] -= self.rest.passed(g, w, i, j, dt)
+                    enter(pairs.sure, u, p, 0, entry(pairs.sure, u, p, 0) - self.rest.passed(g, w, i, j, dt))
                 c, d = self.rule.pair(g, pairs, w, i, j, u, p, True), ti.Vector([0.0 for _ in range(HOLDS + 1)])
                 if self.unsettled(pairs, u, p, c):
                     c[OVERLAP] = -g.reach[w, i]
@@ -73,24 +78,36 @@ class ShapedContacts(Contacts):
                 self.rest.note(g, pairs, w, i, j, u, p, c, d, dt)
 
     @ti.func
-    def block_forces(self, g: ti.template(), pairs: ti.template(), i, j, u, block, load: ti.template(), dt):
+    def block_forces(
+        self,
+        g: ti.template(),
+        pairs: ti.template(),
+        i,
+        j,
+        u,
+        block,
+        apart_y,
+        apart_z,
+        now: ti.template(),
+        load: ti.template(),
+        dt,
+    ):
         """Apply the forces of a block of contacts, less those of their saddles, to grains i and j.
 
-        `load` sums the load on fixed grains.
+        `apart_y` and `apart_z` are the vectors (m) from j to i, `now` the contacts as in `Rest`. `load` sums the load
+        on fixed grains.
 
         Arithmetic on short vectors without branches, as in `Contacts.pair_forces`.
         """
-        approach, ny, nz, py, pz = self.rest.present(self.rest.now, u)
-        at = self.rest.place(u)
-        apart_y, apart_z = self.rest.ways[0][at], self.rest.ways[1][at]
+        approach, ny, nz, py, pz = now[OVERLAP], now[NORMAL_Y], now[NORMAL_Z], now[POINT_Y], now[POINT_Z]
         # Offset from the middle of the overlap to where the outlines of discs would cross, in overlaps.
         back = 0.5 - pairs.share[u, block]
         if ti.static(not self.units.whole):
-            back = ti.select(pairs.grain[u, block] == i, back, -back)
+            back = ti.select(pairs.grain[u, block] == i, back, minus(back))
         overlap = greater(approach, 0.0)
         ly, lz = py + back * overlap * ny, pz + back * overlap * nz
         uy, uz, turning = self.passing(g, pairs, i, j, ly, lz, apart_y, apart_z)
-        rate = -(uy * ny + uz * nz)
+        rate = minus(uy * ny + uz * nz)
         pressing = self.laws.press(PAIR, pairs, u, block, approach, rate, dt)
         fy, fz, torque = pressing * ny, pressing * nz, pressing * (ly * nz - lz * ny)
         if ti.static(self.rule.bent):
@@ -104,7 +121,7 @@ class ShapedContacts(Contacts):
         slip = uz * ny - uy * nz
         ft, roll = self.laws.rub(PAIR, pairs, u, block, overlap, rate, greater(pressing, 0.0), slip, turning, dt)
         fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll
-        self.push_block(g, pairs, i, u, block, fy, fz, torque, -torque - (apart_y * fz - apart_z * fy), load)
+        self.push_block(g, pairs, i, u, block, fy, fz, torque, minus(torque) - (apart_y * fz - apart_z * fy), load)
 
     @ti.func
     def passing(self, g: ti.template(), pairs: ti.template(), i, j, ly, lz, apart_y, apart_z):
@@ -112,8 +129,8 @@ class ShapedContacts(Contacts):
         spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
         uy = gathered(g.now[0], i, pairs.lanes) - gathered(g.now[0], j, pairs.lanes)
         uz = gathered(g.now[1], i, pairs.lanes) - gathered(g.now[1], j, pairs.lanes)
-        uy += -spin_i * lz + spin_j * (lz + apart_z)
-        uz += spin_i * ly - spin_j * (ly + apart_y)
+        uy = uy - spin_i * lz + spin_j * (lz + apart_z)
+        uz = uz + spin_i * ly - spin_j * (ly + apart_y)
         return uy, uz, spin_i - spin_j
 
     @ti.func
@@ -124,7 +141,7 @@ class ShapedContacts(Contacts):
         listed = pairs.grain[u, block]
         if ti.static(not self.units.whole):
             swapped = listed != i
-            fy, fz = ti.select(swapped, -fy, fy), ti.select(swapped, -fz, fz)
+            fy, fz = ti.select(swapped, minus(fy), fy), ti.select(swapped, minus(fz), fz)
             torque_i, torque_j = ti.select(swapped, torque_j, torque_i), ti.select(swapped, torque_i, torque_j)
         self.push_both(g, pairs, u, block, listed, [fy, fz], torque_i, torque_j)
         if ti.static(self.lined):
@@ -182,7 +199,8 @@ class ShapedContacts(Contacts):
         velocity = self.walls.velocity(feature, shift)
         if ti.static(hasattr(contacts, SURE)):
             speed = ti.abs(g.now[0][w, i] - velocity[0]) + ti.abs(g.now[1][w, i] - velocity[1])
-            contacts.sure[u, p][0] -= dt * (speed + g.reach[w, i] * ti.abs(g.spin_now[w, i]))
+            passed = dt * (speed + g.reach[w, i] * ti.abs(g.spin_now[w, i]))
+            enter(contacts.sure, u, p, 0, entry(contacts.sure, u, p, 0) - passed)
         c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
         if self.unsettled(contacts, u, p, c):
             c[OVERLAP] = -g.reach[w, i]

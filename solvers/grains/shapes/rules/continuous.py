@@ -39,6 +39,7 @@ from solvers.grains.shapes.rules.wall import SeenWalls, slopes
 from solvers.grains.shapes.tables import TINY, Tables, advanced
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.machine.wide import enter
 from solvers.tank.walls import Walls
 
 ROOM = 32  # most contacts of a grain with another grain or with one wall
@@ -67,13 +68,13 @@ class Continuous:
     or gap allows, however many steps that takes.
     """
 
-    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
+    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes, wide: int = 0):
         self.units = units
         self.outlines = outlines = with_disc(shapes)
         self.tables = Tables(arrays, outlines)
         self.tracked, self.walls = Tracked(self.tables), SeenWalls(arrays, walls)
         self.bent = not all(outline.convex for outline in shapes.outlines)
-        self.rest = Rest(arrays, units, True) if self.bent else Osculating(arrays, units, outlines)
+        self.rest = Rest(arrays, units, True) if self.bent else Osculating(arrays, units, outlines, wide=wide)
         self.kept = Kept(self.tracked, self.bent)
         self.pair_memory, self.wall_memory = self.kept.pair_memory, self.kept.wall_memory
         self.farthest, self.most = NEAR * self.tables.cells, ROOM
@@ -105,13 +106,13 @@ class Continuous:
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
         """Set contact p to the places of the k-th contact found."""
-        contacts.place_first[u, p][0] = self.places.i[u, k]
+        enter(contacts.place_first, u, p, 0, self.places.i[u, k])
         if ti.static(hasattr(contacts, "place_second")):
-            contacts.place_second[u, p][0] = self.places.j[u, k]
+            enter(contacts.place_second, u, p, 0, self.places.j[u, k])
         if ti.static(self.bent):
-            contacts.saddle_first[u, p][0] = self.places.saddle_i[u, k]
+            enter(contacts.saddle_first, u, p, 0, self.places.saddle_i[u, k])
             if ti.static(hasattr(contacts, "saddle_second")):
-                contacts.saddle_second[u, p][0] = self.places.saddle_j[u, k]
+                enter(contacts.saddle_second, u, p, 0, self.places.saddle_j[u, k])
 
     @ti.func
     def places_for_pair(self, g: ti.template(), w, i, j, most):
@@ -126,9 +127,7 @@ class Continuous:
     @ti.func
     def free(self, contacts: ti.template(), u, p):
         """Mark entry p as free."""
-        contacts.place_first[u, p][0] = -self.tables.cells
-        if ti.static(self.bent):
-            contacts.saddle_first[u, p][0] = NONE
+        self.kept.free(contacts, u, p)
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
@@ -157,7 +156,7 @@ class Continuous:
                     a, b, tries = c[PLACE_I], c[PLACE_J], tries + 1
                 c[HOLDS] = self.keep(pairs, u, p, c, tries)
                 if c[HOLDS] > 0.0:
-                    pairs.place_second[u, p][0] = b
+                    enter(pairs.place_second, u, p, 0, b)
                     if ti.static(self.bent):  # noqa: SIM102 (compiled only there)
                         if c[OVERLAP] > 0.0:
                             c[HOLDS] = ti.select(self.grown(g, pairs, w, i, j, u, p), GROWN, 1.0)
@@ -180,7 +179,7 @@ class Continuous:
             if holds == 0.0:
                 self.kept.end(contacts, u, p, c[HOLDS] > 0.0)
         if holds > 0.0:
-            contacts.place_first[u, p][0] = c[PLACE_I]
+            enter(contacts.place_first, u, p, 0, c[PLACE_I])
         return holds
 
     @ti.func
@@ -193,7 +192,8 @@ class Continuous:
             contact = ti.Vector([c[n] for n in ti.static(SAID)])
             if ti.static(moves):
                 if c[HOLDS] > 0.0:
-                    pairs.saddle_first[u, p][0], pairs.saddle_second[u, p][0] = c[PLACE_I], c[PLACE_J]
+                    enter(pairs.saddle_first, u, p, 0, c[PLACE_I])
+                    enter(pairs.saddle_second, u, p, 0, c[PLACE_J])
                 else:
                     self.kept.end_saddle(pairs, u, p)
         return contact
@@ -334,7 +334,7 @@ class Continuous:
             contact = ti.Vector([c[n] for n in ti.static(SAID)])
             if ti.static(moves):
                 if c[HOLDS] > 0.0:
-                    contacts.saddle_first[u, p][0] = c[PLACE_I]
+                    enter(contacts.saddle_first, u, p, 0, c[PLACE_I])
                 else:
                     self.kept.end_saddle(contacts, u, p)
         return contact

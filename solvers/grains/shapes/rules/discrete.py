@@ -16,6 +16,7 @@ from solvers.grains.shapes.rules.wall import FAR, SeenWalls
 from solvers.grains.shapes.tables import Tables
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.machine.wide import enter
 from solvers.tank.walls import Walls
 
 NEAR = 0.01  # of the distance between nodes: slide of a contact after which neighbouring nodes are checked
@@ -35,25 +36,26 @@ class Discrete(Single):
     wall_memory = (SURE, "node_first")
     pair_memory = (*wall_memory, "node_second")
 
-    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
+    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes, wide: int = 0):
         outlines = with_disc(shapes)
         self.tables = Tables(arrays, outlines)
         # With non-convex outlines a node elsewhere may become the deepest as the two are pressed together.
         near = NEAR * 2.0 * pi / shapes.nodes
         self.followed = FOLLOWED * 2.0 * pi / shapes.nodes
-        self.rest = Osculating(arrays, units, outlines, near) if shapes.convex else Rest(arrays, units, bent=False)
+        carried = Osculating(arrays, units, outlines, near, wide) if shapes.convex else Rest(arrays, units, bent=False)
+        self.rest = carried
         self.nodes, self.walls = Nodes(arrays, self.tables, outlines, shapes.nodes), SeenWalls(arrays, walls)
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
         """Have all nodes of contact p searched at its next evaluation."""
-        contacts.sure[u, p][0] = 0.0
+        enter(contacts.sure, u, p, 0, 0.0)
 
     @ti.func
     def is_due(self, contacts: ti.template(), u, p, radius):
         """Whether all nodes must be searched for contact p; if so, the next search is put off. `radius` in m."""
         due = contacts.sure[u, p][0] <= 0.0
-        contacts.sure[u, p][0] = ti.select(due, self.followed * radius, contacts.sure[u, p][0])
+        enter(contacts.sure, u, p, 0, ti.select(due, self.followed * radius, contacts.sure[u, p][0]))
         return due
 
     @ti.func
@@ -69,9 +71,10 @@ class Discrete(Single):
         one, two = g.outline(w, i), g.outline(w, j)
         c, first, second = self.nodes.contact(one, two, g.apart(w, i, j), first, second, anew)
         if ti.static(moves):
-            pairs.node_first[u, p][0], pairs.node_second[u, p][0] = first, second
+            enter(pairs.node_first, u, p, 0, first)
+            enter(pairs.node_second, u, p, 0, second)
             if c[0] <= 0.0:
-                pairs.sure[u, p][0] = 0.0
+                enter(pairs.sure, u, p, 0, 0.0)
         return ti.Vector([c[0], c[1], c[2], c[3], c[4], 1.0 + 0.0 * c[0], c[5], c[6]])
 
     @ti.func
@@ -98,7 +101,7 @@ class Discrete(Single):
                     if self.height(g.shape[w, i], beside, own) < self.height(g.shape[w, i], lowest, own):
                         lowest = beside
             if ti.static(moves):
-                contacts.node_first[u, p][0] = lowest
+                enter(contacts.node_first, u, p, 0, lowest)
             node = g.radius[w, i] * turned(g.turn(w, i), self.nodes.place(g.shape[w, i], lowest))
             overlap = -ti.cast(face[2], g.real) - node.dot(normal)
             if not self.walls.counts_on_segment(feature, shift, g.y[w, i] + node[0], g.z[w, i] + node[1]):

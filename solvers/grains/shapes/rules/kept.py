@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.rules.rest import STILL, SURE
 from solvers.grains.shapes.rules.tracked import NONE, Tracked
+from solvers.machine.wide import enter
 
 # Memory of a contact with a wall, and what a contact of two grains has in addition; *_BENT for non-convex outlines.
 WALL, WALL_BENT = ("place_first",), ("saddle_first", SURE)
@@ -36,7 +37,14 @@ class Kept:
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
         """Mark contact p as ended or lost."""
-        contacts.place_first[u, p][0] = self.tables.wrapped(contacts.place_first[u, p][0]) - self.tables.cells
+        enter(contacts.place_first, u, p, 0, self.tables.wrapped(contacts.place_first[u, p][0]) - self.tables.cells)
+
+    @ti.func
+    def free(self, contacts: ti.template(), u, p):
+        """Mark entry p as free: neither contact nor saddle."""
+        enter(contacts.place_first, u, p, 0, -self.tables.cells)
+        if ti.static(hasattr(contacts, "saddle_first")):
+            enter(contacts.saddle_first, u, p, 0, NONE)
 
     @ti.func
     def beside(self, contacts: ti.template(), u, p, side):
@@ -92,16 +100,16 @@ class Kept:
         elif other < self.met:
             self.end_before(contacts, u, before, p)
         else:
-            contacts.saddle_first[u, p][0] = NONE
+            enter(contacts.saddle_first, u, p, 0, NONE)
 
     @ti.func
     def end_with_own(self, contacts: ti.template(), u, p):
         """End contact p together with the saddle before it."""
         for side in ti.static((-1.0, 1.0)):
-            contacts.sure[u, self.beside(contacts, u, p, side)][0] = 0.0  # it has not looked beyond p
+            enter(contacts.sure, u, self.beside(contacts, u, p, side), 0, 0.0)  # it has not looked beyond p
         if not self.is_lost(contacts, u, p):
             self.lose(contacts, u, p)
-        contacts.saddle_first[u, p][0] = NONE
+        enter(contacts.saddle_first, u, p, 0, NONE)
 
     @ti.func
     def end_before(self, contacts: ti.template(), u, p, after):
@@ -112,11 +120,11 @@ class Kept:
     @ti.func
     def take_over_saddle(self, contacts: ti.template(), u, p, q):
         """Set the saddle before contact p to the one before q."""
-        contacts.saddle_first[u, p][0] = contacts.saddle_first[u, q][0]
+        enter(contacts.saddle_first, u, p, 0, contacts.saddle_first[u, q][0])
         if ti.static(hasattr(contacts, "saddle_second")):
-            contacts.saddle_second[u, p][0] = contacts.saddle_second[u, q][0]
+            enter(contacts.saddle_second, u, p, 0, contacts.saddle_second[u, q][0])
         if ti.static(hasattr(contacts, STILL)):
-            contacts.still[u, p][0] = 0.0  # the stored saddle is no longer valid
+            enter(contacts.still, u, p, 0, 0.0)  # the stored saddle is no longer valid
 
     @ti.func
     def way_back(self, contacts: ti.template(), u, p, q):
@@ -141,4 +149,4 @@ class Kept:
     @ti.func
     def look_again(self, contacts: ti.template(), u, p, sure, least):
         """Have the next look beside contact p be due when the grains have moved by `sure` (m), but at the `least` m."""
-        contacts.sure[u, p][0] = greater(sure, least)
+        enter(contacts.sure, u, p, 0, greater(sure, least))

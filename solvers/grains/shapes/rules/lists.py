@@ -10,6 +10,7 @@ from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.lists.wear import NEVER
 from solvers.grains.shapes.rules.rest import STILL
 from solvers.grains.shapes.support import Support
+from solvers.machine.wide import enter
 
 BENT_PLACES = 4  # initial entries per pair if an outline is non-convex
 
@@ -35,7 +36,9 @@ class ShapedNeighbours(Neighbours):
             self.support = Support(arrays, rule.outlines)
         for contacts in (self.pairs, self.contacts):
             # In a pair's first entry: whether its contacts must be searched for again.
-            (contacts.wanted,) = contacts.arrays.vectors(contacts.each, "wanted", across=units.single)
+            (contacts.wanted,) = contacts.arrays.vectors(
+                contacts.each, "wanted", across=units.single, wide=contacts.wide
+            )
         self.asking = arrays.under("lists").holding("asking", np.zeros(units.count), "unit", ti.i32, kept=True)
 
     @ti.func
@@ -45,9 +48,9 @@ class ShapedNeighbours(Neighbours):
         for p in range(found, ti.min(found + places, self.pairs.capacity)):
             self.write_pair(g, u, p, i, j, target, False, dt)
             farther = greater(g.reach[self.units.world(u), i], g.reach[self.units.world(u), j])
-            self.pairs.reach[u, p // self.lanes][p % self.lanes] = farther
+            enter(self.pairs.reach, u, p // self.pairs.lanes, p % self.pairs.lanes, farther)
             self.rule.free(self.pairs, u, p)
-            self.pairs.wanted[u, p][0] = ti.select(p == found, 1.0, 0.0)
+            enter(self.pairs.wanted, u, p, 0, ti.select(p == found, 1.0, 0.0))
         return found + places
 
     @ti.func
@@ -57,7 +60,7 @@ class ShapedNeighbours(Neighbours):
         for p in range(found, ti.min(found + places, self.contacts.capacity)):
             self.write_contact(g, u, p, i, feature, False, dt)
             self.rule.free(self.contacts, u, p)
-            self.contacts.wanted[u, p][0] = ti.select(p == found, 1.0, 0.0)
+            enter(self.contacts.wanted, u, p, 0, ti.select(p == found, 1.0, 0.0))
         return found + places
 
     @ti.func
@@ -134,7 +137,7 @@ class ShapedNeighbours(Neighbours):
                     self.pairs.recall(u, p, q)
                     known = True
             if known:
-                self.pairs.wanted[u, p][0] = 0.0
+                enter(self.pairs.wanted, u, p, 0, 0.0)
                 self.rule.rest.forget(self.pairs, u, p, True)
         return known
 
@@ -149,7 +152,7 @@ class ShapedNeighbours(Neighbours):
             end += 1
         if not whole:
             contacts.set_aside_some(u, row, head, end)
-        contacts.wanted[u, head][0] = 0.0
+        enter(contacts.wanted, u, head, 0, 0.0)
         for p in range(head, end):
             contacts.clear(u, p)
             if p - head < count:
@@ -190,7 +193,7 @@ class ShapedNeighbours(Neighbours):
     @ti.func
     def want(self, contacts: ti.template(), u, p):
         """Have the contacts of p's pair searched for again before the next step."""
-        contacts.wanted[u, self.head(contacts, u, p)][0] = 1.0
+        enter(contacts.wanted, u, self.head(contacts, u, p), 0, 1.0)
         if ti.static(self.units.single):
             self.wear.travel[u] = NEVER
         else:

@@ -58,7 +58,7 @@ class Nodes:
         contact point is the deepest node: of all nodes if `all_nodes`, else of `node_i`, `node_j` and their neighbours.
         """
         between, back = turned_back(two.turn, one.turn), turned_back(one.turn, two.turn)
-        centre, centre_back = turned_back(two.turn, apart), turned_back(one.turn, -apart)
+        centre, centre_back = turned_back(two.turn, apart), turned_back(one.turn, 0.0 - apart)
         a, b = node_i, node_j
         first = self.seen(one, between, two, centre, a)
         second = self.seen(two, back, one, centre_back, b)
@@ -80,7 +80,7 @@ class Nodes:
             contact = ti.Vector([there, normal[0], normal[1], point[0] - apart[0], point[1] - apart[1], 0.0, curved])
         elif here > 0.0:
             own = own_of(second)
-            normal, point, curved = -normal_of(second, one.turn), turned(one.turn, own), self.curved(one, own)
+            normal, point, curved = 0.0 - normal_of(second, one.turn), turned(one.turn, own), self.curved(one, own)
             contact = ti.Vector([here, normal[0], normal[1], point[0], point[1], curved, 0.0])
         elif all_nodes:
             far_i, far_j = self.nearby(one), self.nearby(two)

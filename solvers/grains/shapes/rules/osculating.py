@@ -10,6 +10,7 @@ from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.rules.rest import HOLDS, OVERLAP, Rest
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.machine.wide import minus, size
 
 CURVED_I, CURVED_J = HOLDS + 1, HOLDS + 2  # elements of a rule's contact: radii of curvature (m)
 OFF, LONGEST = 1e-7, 0.02  # of R0: error of an overlap after a slide, and the longest slide
@@ -29,14 +30,14 @@ class Osculating(Rest):
     said = (*Rest.said, "curved_i", "curved_j")
     elements = (*Rest.elements, CURVED_I, CURVED_J)
 
-    def __init__(self, arrays: State, units: Units, outlines: list[Contour], most: float = inf):
-        super().__init__(arrays, units, False)
+    def __init__(self, arrays: State, units: Units, outlines: list[Contour], most: float = inf, wide: int = 0):
+        super().__init__(arrays, units, False, wide)
         slides = np.array([min(most, slide_of(outline)) for outline in outlines])
         self.slides = arrays.holding("rest.slides", slides, "outline")
 
     @ti.func
-    def carried(self, to: ti.template(), names: ti.template(), pairs: ti.template(), u, block, moves: ti.template()):
-        """Write contacts as they are after these moves to `to`; returns how far (m) they have slid on both outlines.
+    def carried(self, names: ti.template(), pairs: ti.template(), u, block, moves: ti.template()):
+        """Contacts as they are after these moves, and how far (m) they have slid on both outlines.
 
         Computed in components along and across the old normal, from the grains' centres.
         """
@@ -44,13 +45,13 @@ class Osculating(Rest):
         overlap = greater(was, 0.0)
         curved_i, curved_j = pairs.was_curved_i[u, block], pairs.was_curved_j[u, block]
         far_y, far_z = py + pairs.apart_y[u, block], pz + pairs.apart_z[u, block]
-        at, half = self.place(u), 0.5 * overlap
+        half = 0.5 * overlap
         # The centres of curvature, and their displacements as the grains turn.
         n_i, t_i = py * ny + pz * nz + (curved_i - half), pz * ny - py * nz
         n_j, t_j = far_y * ny + far_z * nz - (curved_j - half), far_z * ny - far_y * nz
         sine_i, lost_i = turn_by(moves[2])
         sine_j, lost_j = turn_by(moves[3])
-        to_n, to_t = -sine_i * t_i - lost_i * n_i, sine_i * n_i - lost_i * t_i
+        to_n, to_t = minus(sine_i * t_i) - lost_i * n_i, sine_i * n_i - lost_i * t_i
         un = moves[0] * ny + moves[1] * nz + to_n + sine_j * t_j + lost_j * n_j
         ut = moves[1] * ny - moves[0] * nz + to_t - sine_j * n_j + lost_j * t_j
         # x is the tangent of the angle by which the line through both centres of curvature has turned.
@@ -61,15 +62,15 @@ class Osculating(Rest):
         cosine = 1.0 - square * (0.5 - 0.375 * square)
         sine, back = cosine * x, curved_i - 0.5 * now
         own_n, own_t = n_i + to_n - back * cosine, t_i + to_t - back * sine
-        to[0][at] = ti.select(was > 0.0, now, was)
-        to[1][at], to[2][at] = cosine * ny - sine * nz, cosine * nz + sine * ny
-        to[3][at], to[4][at] = own_n * ny - own_t * nz, own_n * nz + own_t * ny
-        return ti.abs(curved_i * (x - moves[2])) + ti.abs(curved_j * (x - moves[3]))
+        now = ti.select(was > 0.0, now, was)
+        slid = size(curved_i * (x - moves[2])) + size(curved_j * (x - moves[3]))
+        py, pz = own_n * ny - own_t * nz, own_n * nz + own_t * ny
+        return now, cosine * ny - sine * nz, cosine * nz + sine * ny, py, pz, slid
 
     @ti.func
     def far(self, pairs: ti.template(), u, block, way, slid, angle_i, angle_j):
         """Slide (m) of a contact, or displacement (m) of grains that were apart."""
-        slid = ti.select(ti.abs(angle_i) + ti.abs(angle_j) < TOGETHER, slid, 1.0 + 0.0 * slid)
+        slid = ti.select(size(angle_i) + size(angle_j) < TOGETHER, slid, 1.0 + 0.0 * slid)
         return ti.select(pairs.was_overlap[u, block] > 0.0, slid, way)
 
     @ti.func

@@ -2,6 +2,8 @@
 
 import taichi as ti
 
+from solvers.machine.wide import entry
+
 
 @ti.data_oriented
 class Single:
@@ -22,7 +24,7 @@ class Single:
     @ti.func
     def away(self, contacts: ti.template(), u, q, k):
         """Distance from contact q of the old list to the pair's contact: zero, since it is the same."""
-        return 0.0 * contacts.stiffness[u, 0][0]
+        return 0.0 * entry(contacts.stiffness, u, 0, 0)
 
     @ti.func
     def was_known(self, contacts: ti.template(), u, q):

@@ -192,12 +192,12 @@ class Tracked:
             if swap:
                 own, other = two, one
             between = turned_back(other.turn, own.turn)
-            centre = turned_back(other.turn, ti.select(swap, -apart, apart))
+            centre = turned_back(other.turn, ti.select(swap, 0.0 - apart, apart))
             spacing = own.scale * self.tables.bounding[own.shape] * (2.0 * pi / points)
             far = other.scale * self.tables.bounding[other.shape] + skin + 2.0 * spacing
             near = STEEPEST * skin + 2.0 * spacing
             earlier, last, last_x, last_y = far, far, far, far
-            toward = turned_back(one.turn, -apart)
+            toward = turned_back(one.turn, 0.0 - apart)
             for k in range(-2, ti.select(done, -2, ti.select(side < 0, -1, points))):
                 at = (k & (points - 1)) * stride
                 point = ti.Vector([self.tables.curve[own.shape, at, 0], self.tables.curve[own.shape, at, 4]])

@@ -45,7 +45,7 @@ class SeenWalls:
             seen = ti.Vector([normal[0], normal[1], ti.cast(face[2], g.real)])
         else:
             point = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
-            corner = turned_back(g.turn(w, i), -ti.Vector([ti.cast(point[0], g.real), ti.cast(point[1], g.real)]))
+            corner = turned_back(g.turn(w, i), ti.Vector([-ti.cast(point[0], g.real), -ti.cast(point[1], g.real)]))
             seen = ti.Vector([corner[0], corner[1], ti.cast(0.0, g.real)])
         return seen
 
@@ -67,13 +67,13 @@ class SeenWalls:
     def corner_contact(self, g: ti.template(), tables: ti.template(), w, i, feature, shift: ti.template()):
         """Contact of grain i with a corner, by polar radius: overlap (m), normal, point from the centre (m), 1."""
         away = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
-        corner = -ti.Vector([ti.cast(away[0], g.real), ti.cast(away[1], g.real)])
+        corner = ti.Vector([-ti.cast(away[0], g.real), -ti.cast(away[1], g.real)])
         own = turned_back(g.turn(w, i), corner)
         distance = own.norm()
         radius = g.radius[w, i] * tables.radius_and_slope(g.shape[w, i], own[0], own[1])
         tilt = radius[0] / ti.sqrt(radius[0] ** 2 + radius[1] ** 2)
         outward = ti.Vector([radius[0] * own[0] + radius[1] * own[1], radius[0] * own[1] - radius[1] * own[0]])
-        normal = -turned(g.turn(w, i), outward * tilt / (radius[0] * distance))
+        normal = 0.0 - turned(g.turn(w, i), outward * tilt / (radius[0] * distance))
         overlap = (radius[0] - distance) * tilt
         if not self.counts_on_corner(feature, normal[0], normal[1]):
             overlap = -FAR

@@ -12,6 +12,7 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.outlines import ellipse, star
 from tests.oracles.scenes import box, material
+from tests.oracles.scenes import simulation as moving
 
 RADIUS = 1.5e-3
 WORLDS = 24
@@ -167,3 +168,23 @@ def test_a_triangle_rests_on_its_edge_for_a_minute():
     assert simulation.observe()["contacts"][0] >= 1
     assert np.abs(after["position"] - before["position"]).max() < 1e-3 * RADIUS
     assert abs(after["angle"] - before["angle"]).max() < 1e-3
+
+
+@pytest.mark.slow
+def test_a_spinning_grain_bears_a_list_that_has_shrunk_in_mixed_precision():
+    """The last two grains part. Their place in the list pads it then, with the first grain and one 1 km off."""
+    place = np.array([[0.0, 0.05], [2.5 * RADIUS, 0.05], [5.0 * RADIUS, 0.05]])
+    velocity = np.array([[0.0, 0.0], [0.0, 0.0], [2.0, 0.0]])
+    shapes = Shapes((ellipse(1.3, 0.8),), np.zeros((1, 3), dtype=int), np.zeros((1, 3)))
+    simulation = moving(
+        place[None], RADIUS, box(0.2, 0.1), velocity=velocity, spin=np.array([500.0, 0.0, 0.0]), gravity=1e-9,
+        shapes=shapes, precision="mixed", start_speed=2.0, stiffness_scale=1e-2,
+    )  # fmt: skip
+    lists = simulation.grains.lists.pairs.length
+    simulation.advance(1)
+    before = lists[0]
+    simulation.advance(50)
+    assert before == 2
+    assert lists[0] == 1
+    assert np.isfinite(simulation.snapshot()["spin"]).all()
+    simulation.close()
