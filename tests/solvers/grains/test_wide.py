@@ -234,6 +234,21 @@ def test_every_law_between_outlines_is_right_on_real_vectors(models):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    "where",
+    [
+        {"vessels": afloat(None)},
+        {"vessels": afloat(0.01)},
+        {"motions": [(Roll(0.2, 0.7), Sway(0.01, 1.5))] * 2},
+        {"schedule": "per-band", "threads": 2},
+    ],
+    ids=["afloat", "afloat in steps", "swayed", "in bands"],
+)
+def test_real_vectors_bear_outlines_wherever_they_are(where):
+    agree(*(thrown(lanes, rule="continuous", tangential="mindlin", **where) for lanes in (0, 8)))
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [{"rule": "area"}, {"rule": "continuous", "precision": "mixed"}], ids=str)
 def test_other_outlines_are_not_on_real_vectors(changes):
     run = throw(8, tangential="mindlin", **changes)
