@@ -240,7 +240,7 @@ def test_every_law_between_outlines_is_right_on_real_vectors(models):
         {"vessels": afloat(None)},
         {"vessels": afloat(0.01)},
         {"motions": [(Roll(0.2, 0.7), Sway(0.01, 1.5))] * 2},
-        {"schedule": "per-band", "threads": 2},
+        {"schedule": "per-band", "threads": 4},  # two bands a world
     ],
     ids=["afloat", "afloat in steps", "swayed", "in bands"],
 )
