@@ -198,6 +198,7 @@ def test_lists_equal_brute_force_while_grains_fly(clouded):
     assert np.flatnonzero(np.array(sought)[:, 1]).tolist() == [0]
 
 
+@pytest.mark.slow
 def test_candidates_that_fill_their_room_are_all_kept(monkeypatch):
     """Nothing that is looked at after the last pair is found is written over it."""
     places = RADIUS * np.array([[[2.1 * (k % 6) - 5.25, 1.05 + 2.1 * (k // 6)] for k in reversed(range(12))]])
