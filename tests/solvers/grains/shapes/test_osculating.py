@@ -116,7 +116,7 @@ def test_contacts_between_discs_are_exact_to_rounding():
 
 
 def test_a_forgotten_contact_has_no_normal_however_far_off_its_mate_is():
-    """In 32 bits a grain's spin times such levers became infinite, and no number of its torque."""
+    """In 32 bits such levers times a grain's spin became infinite, and its torque not a number."""
     pairs, _, moves = moved_pairs(3e-3)
     carrying = Carrying(COUNT, "f32")
     far = np.where([True, True, False, False], 1e3, moves).astype(np.float32)
