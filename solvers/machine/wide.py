@@ -51,9 +51,9 @@ def lanes_of_outlines(precision: str) -> int:
     return OF_OUTLINES if lanes() and precision == "f64" else 0
 
 
-def told_of_outlines(lanes: int) -> int:
-    """Lanes of outlines by a state. Older ones, of outlines on scalars, tell those that discs would have."""
-    return lanes if lanes <= OF_OUTLINES else 0
+def told_of_outlines(told: int) -> int:
+    """Lanes of outlines by a state. Older ones, of outlines on scalars, tell the lanes that discs would have: 0."""
+    return told if told <= OF_OUTLINES else 0
 
 
 @cache
