@@ -153,6 +153,9 @@ def _linked(file: h5py.File, name: str) -> h5py.Group | h5py.Dataset:
         if isinstance(file.get(name, getlink=True), h5py.HardLink):
             return file[name]
     except (OSError, RuntimeError, KeyError) as error:
+        if "bad version number" in str(error):  # not damage: headers have checksums
+            known = f"it was written by a newer HDF5 than the {h5py.version.hdf5_version} here"
+            raise Unusable(f"{file.filename}: {name} cannot be read, {known}: pip install --upgrade h5py.") from error
         raise Unusable(f"{file.filename}: {name} is damaged: record the run again.") from error
     raise Unusable(f"{file.filename}: {name} is a link, possibly to another file: do not use this file.")
 

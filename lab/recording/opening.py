@@ -30,12 +30,16 @@ NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 RESERVES = hasattr(os, "posix_fallocate")
 BLOCK = 2**20  # bytes; no block of a chunk index is larger
 
+# The format of HDF5 1.10, the first with SWMR mode and with checksums of all structures. "latest" is the newest format
+# that this HDF5 knows, which programs built with an older one cannot read, or misread.
+VERSION = "v110"
+
 Opened = TypeVar("Opened")
 
 
 def create(path: Path) -> h5py.File:
     """Create a file, replacing one of the same name."""
-    return _with_or_without_locks(lambda lock: h5py.File(path, "w", libver="latest", locking=lock))
+    return _with_or_without_locks(lambda lock: h5py.File(path, "w", libver=(VERSION, VERSION), locking=lock))
 
 
 def open_to_read(path: Path) -> h5py.File:
@@ -175,7 +179,7 @@ def _live(path: Path) -> h5py.File:
 
 def _adding(path: Path, lock: bool | None) -> h5py.File:
     access = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
-    access.set_libver_bounds(h5py.h5f.LIBVER_LATEST, h5py.h5f.LIBVER_LATEST)
+    access.set_libver_bounds(h5py.h5f.LIBVER_V110, h5py.h5f.LIBVER_V110)
     if lock is not None:
         access.set_file_locking(lock, True)
     return h5py.File(h5py.h5f.open(os.fsencode(path), h5py.h5f.ACC_RDWR | h5py.h5f.ACC_SWMR_WRITE, access))

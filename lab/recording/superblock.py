@@ -18,7 +18,7 @@ _WORD = 2**32 - 1
 
 def is_sound(head: bytes) -> bool:
     """Whether these bytes are a superblock of version 3 with a correct checksum."""
-    return len(head) == SIZE and head.startswith(SIGNATURE) and _sealed(head[:-4]) == head
+    return len(head) == SIZE and head.startswith(SIGNATURE) and sealed(head[:-4]) == head
 
 
 def is_marked(head: bytes) -> bool:
@@ -35,10 +35,10 @@ def amended(head: bytes, flags: int, end: int) -> bytes:
     """The superblock with these flags and this file size (bytes)."""
     changed = bytearray(head[:-4])
     changed[FLAGS], changed[_END] = flags, end.to_bytes(8, "little")
-    return _sealed(bytes(changed))
+    return sealed(bytes(changed))
 
 
-def _sealed(content: bytes) -> bytes:
+def sealed(content: bytes) -> bytes:
     """The content followed by its checksum."""
     return content + struct.pack("<I", _lookup3(content))
 
