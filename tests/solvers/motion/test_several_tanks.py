@@ -6,6 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from solvers.grains.shapes.given import Shapes
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.loads import Floating
@@ -16,6 +17,7 @@ from solvers.ship.water import Water
 from solvers.ship.waves import regular
 from solvers.simulation import Simulation
 from solvers.tank.tank import Tank
+from tests.oracles.outlines import ellipse
 from tests.oracles.scenes import box as tank
 from tests.oracles.scenes import material
 
@@ -115,3 +117,30 @@ def test_each_tank_bears_its_own_grains(laden):
     assert first[1] / one == pytest.approx(-counts[0], rel=0.1)
     assert second[1] / one == pytest.approx(-counts[1], rel=0.1)
     assert not empty.any()
+
+
+@pytest.mark.slow
+def test_outlines_move_alike_in_equal_tanks():
+    """An ellipse that falls, bounces and rolls in one tank does the same in another of the hull."""
+    falls = np.array([0.003, 3.0 * RADIUS])
+    given = Shapes((ellipse(1.3, 1.0 / 1.3),), np.zeros((1, 2), int), np.full((1, 2), 0.4))
+    scene = Scene(
+        np.full((1, 2), RADIUS),
+        tank(0.1, 0.06) + PORT,
+        GRAIN,
+        GRAIN,
+        tangential="mindlin",
+        vessels=[replace(ship(), heel=0.0)],
+        thickness=0.02,
+        length=1.5,
+        more_tanks=(Tank(tank(0.1, 0.06) + BOARD, 0.02, length=1.5),),
+        shapes=given,
+        step=2e-5,
+    )
+    run = Simulation(scene, np.stack([falls + PORT, falls + BOARD])[None], 1)
+    run.advance(10_000)
+    ends, angles = run.snapshot()["position"][0], run.snapshot()["angle"][0]
+    run.close()
+    assert ends[0, 1] < 0.6 * falls[1] and abs(angles[0] - 0.4) > 0.1  # it has fallen and turned
+    np.testing.assert_allclose(ends[1] - BOARD, ends[0] - PORT, atol=1e-9)
+    assert angles[1] == pytest.approx(angles[0], abs=1e-6)

@@ -22,7 +22,7 @@ class SeenWalls:
 
     def __init__(self, arrays: State, walls: Walls):
         self.walls = walls
-        self.ends = arrays.holding("walls.ends", _ends(walls), "feature number", arrays.place)
+        self.ends = arrays.holding("walls.limits", _ends(walls), "feature number", arrays.place)
 
     @ti.func
     def facing(self, feature, shift: ti.template(), y, z):
