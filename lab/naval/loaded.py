@@ -50,16 +50,13 @@ class Loaded:
     @property
     def draughts(self) -> tuple[float, float, float]:
         """Draughts (m) at the aft and the forward perpendicular, and their mean."""
-        level, x = self.level, self.form.x
-        slope = (level[-1] - level[0]) / (x[-1] - x[0])
-        aft = float(level[0] - slope * x[0])
-        fore = float(aft + slope * self.form.perpendiculars)
+        aft, fore = self.form.draughts(self.level)
         return aft, fore, 0.5 * (aft + fore)
 
     @cached_property
     def upright(self) -> Hydrostatics:
-        """Particulars at the mean draught, her keel level."""
-        return self.form.hydrostatics(min(self.draughts[2], self.form.depth), self.water)
+        """Particulars upright, trimmed as she is: KM is that of her own waterplane."""
+        return self.form.afloat(self.level, self.water)
 
     @property
     def solid(self) -> float:

@@ -24,8 +24,8 @@ MOST_STEPS = 25  # of Newton's method for draught and trim
 class Hydrostatics:
     """Hydrostatic particulars at a draught, upright: lengths in m, displacement in t, TPC in t/cm, MCT in t m/cm.
 
-    lcb and lcf are forward from the aft perpendicular, kb, km and kml above the keel. The coefficients are of length
-    and breadth of this waterline, except `block`, which has the length between perpendiculars if that is given.
+    lcb and lcf are as the stations' x, kb, km and kml above the keel. MCT and the coefficients have the length between
+    perpendiculars, and the breadth of this waterline; `length` is the waterline's.
     """
 
     draught: float
@@ -53,12 +53,14 @@ class Hydrostatics:
 class Form:
     """Stations x (n,) m that rise, and a section at each, None where the hull has shrunk to a point or a line.
 
-    `length` (m) is that between perpendiculars; the distance of the outermost stations without it.
+    `length` (m) is that between perpendiculars, from the aft one at x = `aft` (m); without a length both are at the
+    outermost stations.
     """
 
     x: np.ndarray
     sections: Sequence[Section | None]
     length: float | None = None
+    aft: float = 0.0
 
     def __post_init__(self):
         x = np.asarray(self.x, dtype=float)
@@ -74,6 +76,18 @@ class Form:
     def perpendiculars(self) -> float:
         """Length (m) that trimming moments and coefficients are of."""
         return self.length or float(np.ptp(self.x))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Places x (m) of the aft and the forward perpendicular."""
+        aft = self.aft if self.length else float(self.x[0])
+        return aft, aft + self.perpendiculars
+
+    def draughts(self, level: np.ndarray) -> tuple[float, float]:
+        """Draughts (m) at the aft and the forward perpendicular of water `level` (n,) m high at the stations."""
+        slope = (level[-1] - level[0]) / (self.x[-1] - self.x[0])
+        aft, fore = (float(level[0] + slope * (end - self.x[0])) for end in self.ends)
+        return aft, fore
 
     @cached_property
     def weights(self) -> np.ndarray:
@@ -124,18 +138,28 @@ class Form:
             raise Unavailable(
                 f"the draught of {draught:.4g} m must be above 0 and at most the {self.depth:.4g} m of the stations."
             )
-        level = np.full(len(self.x), draught)
+        return self.afloat(np.full(len(self.x), draught), water)
+
+    def afloat(self, level: np.ndarray, water: Water) -> Hydrostatics:
+        """Particulars upright with water `level` (n,) m high at the stations: of a trimmed ship, her own waterplane.
+
+        `draught` is the mean of those at the perpendiculars. KM is GM + KG as the slope of GZ upright has it, while
+        displacement and the centre of buoyancy along her are kept: the waterplane's second moment is that about the
+        axis about which she then heels. Raises `Unavailable` for a dry hull.
+        """
         volume, centre = self.displaced(level)
         areas, plane = self._along(level, 0.0)[:, 0], self._along(level, 0.0, plane=True)
         breadths = plane[:, 0]
         surface = float(self.weights @ breadths)
+        draught = 0.5 * sum(self.draughts(level))
         if volume <= 0.0 or surface <= 0.0:
             raise Unavailable(f"at a draught of {draught:.4g} m the hull displaces nothing.")
         lcf = float(self.weights @ (self.x * breadths)) / surface
-        bm = float(self.weights @ plane[:, 2]) / volume
-        bml = (float(self.weights @ (self.x**2 * breadths)) - lcf**2 * surface) / volume
+        along = float(self.weights @ ((self.x - lcf) ** 2 * breadths))
+        bm, bml = self._second_moment(plane, lcf, surface, along) / volume, along / volume
         length, breadth = self._waterline(breadths), float(breadths.max())
-        displacement, full = water.density * volume / TONNE, float(areas.max())
+        fullest = int(np.argmax(areas))
+        displacement, full = water.density * volume / TONNE, float(areas[fullest])
         between = self.perpendiculars
         return Hydrostatics(
             draught=draught,
@@ -154,10 +178,19 @@ class Form:
             length=length,
             breadth=breadth,
             block=volume / (between * breadth * draught),
-            midship=full / (breadth * draught),
+            midship=full / (breadth * float(level[fullest])),
             prismatic=volume / (between * full),
             plane=surface / (between * breadth),
         )
+
+    def _second_moment(self, plane: np.ndarray, lcf: float, surface: float, along: float) -> float:
+        """Second moment (m⁴) of the waterplane about the axis about which she heels if she sinks and trims freely.
+
+        ∫y² dA − (∫y dA)²/A − (∫(x − lcf) y dA)²/∫(x − lcf)² dA; the last two vanish if both sides are alike. `plane`
+        (n, 3): breadth and moments at the stations; `along`: the last integral (m⁴).
+        """
+        aside, skew = self.weights @ plane[:, 1], self.weights @ ((self.x - lcf) * plane[:, 1])
+        return float(self.weights @ plane[:, 2] - aside**2 / surface - skew**2 / along)
 
     def _waterline(self, breadths: np.ndarray) -> float:
         """Length (m) of the waterline: to the stations where it ends, or where it is wet last."""

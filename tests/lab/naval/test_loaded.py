@@ -1,13 +1,14 @@
 """A hull with weights, openings, holds and grain: the sheet of the preset of that ship, closed forms, bad input."""
 
 import csv
+from importlib.resources import files as files_of
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lab.assembly.offsets import from_offsets
+from lab.assembly.offsets import from_offsets, read_offsets
 from lab.assembly.scene import vessels
 from lab.cli.naval import hull
 from lab.naval import sheet
@@ -19,7 +20,7 @@ from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.weights import Weights
 from lab.preset.find import load
 from lab.report.hull import Asked, examine
-from solvers.ship.naval.form import prism
+from solvers.ship.naval.form import Form, prism
 from solvers.ship.naval.immersion import deck_edges
 from solvers.ship.section import Section, box
 from solvers.ship.water import Water
@@ -80,6 +81,40 @@ def test_tables_of_the_preset_give_its_sheet(files, tmp_path):
     assert float(grain[-1].split(",")[-1]) == pytest.approx(0.8 * arm, rel=1e-3)
     last = (tmp_path / "out" / "hold-3.csv").read_text().splitlines()[-1].split(",")
     assert float(last[1]) == pytest.approx(25.0 * 283.376, rel=1e-4)  # full: the area of the outline
+
+
+def slope_of_levers(ship: Loaded, heel: float = 1e-4) -> float:
+    """dGZ/dφ (m) upright, trimming freely, by a central difference whose error is of the order GM φ²."""
+    given = ship.weights
+    levers = ship.form.righting_levers(
+        given.mass, SEA, np.array([-heel, heel]), (given.tcg, given.fluid_vcg), given.lcg
+    )
+    return float(np.diff(levers)[0]) / (2.0 * heel)
+
+
+@pytest.mark.parametrize("aside", [0.0, 3.0])
+def test_trimmed_box_has_the_metacentre_of_her_own_waterplane(aside):
+    """G lies d aft of amidships: t = 12 T d/L; KB = T/2 + t²/24T, BM = B²/12T, also if y is not from her middle."""
+    middle = np.add(box(2.0 * HALF, DEPTH).outline, [aside, 0.0])
+    ship = Loaded(prism(Section(middle), LENGTH), SEA, Weights(MASS, LENGTH / 2 - 8.0, aside, KG, 0.0))
+    trim, found = 12.0 * DRAUGHT * 8.0 / LENGTH, ship.upright
+    assert ship.draughts[0] - ship.draughts[1] == pytest.approx(trim, rel=1e-9)
+    kb, bm = DRAUGHT / 2.0 + trim**2 / (24.0 * DRAUGHT), (2.0 * HALF) ** 2 / (12.0 * DRAUGHT)
+    assert (found.kb, found.bm, found.displacement) == pytest.approx((kb, bm, MASS), rel=1e-9)
+    assert ship.metacentric_height == pytest.approx(kb + bm - KG, rel=1e-9)
+    assert slope_of_levers(ship) == pytest.approx(ship.metacentric_height, rel=1e-6)
+
+
+def test_trimmed_container_ship_has_the_metacentre_of_her_own_levers():
+    """S175 by the stern, also with her sides unlike: GM is the slope of GZ, and what floats is what she weighs."""
+    lines = read_offsets(Path(str(files_of("presets"))) / "ship" / "s175.csv")
+    sheared = [
+        one and Section(np.add(one.outline, [0.01 * x, 0.0])) for x, one in zip(lines.x, lines.sections, strict=True)
+    ]
+    for form in (lines, Form(lines.x, tuple(sheared))):
+        ship = Loaded(form, SEA, Weights(15_000.0, 78.0, 0.0, 8.0, 0.0))
+        assert ship.upright.displacement == pytest.approx(15_000.0, rel=1e-9)
+        assert slope_of_levers(ship) == pytest.approx(ship.metacentric_height, rel=1e-5)
 
 
 def test_deck_edge_and_opening_of_a_box():
