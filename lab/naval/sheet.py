@@ -91,8 +91,8 @@ def facts(condition: Condition) -> list[tuple[str, str]]:
         ("draught", f"{condition.draught:.4g} m, breadth {h.breadth:.4g} m, block coefficient {condition.block:.3f}"),
         ("KB, BM, KM", f"{h.kb:.3f}, {h.bm:.3f}, {h.km:.3f} m"),
         *_gravity(condition),
-        ("deck edge under", degrees(condition.deck) if condition.deck else "no deck is given"),
-        ("downflooding", degrees(condition.flooding) if condition.flooding else "no opening is given"),
+        ("deck edge under", "no deck is given" if condition.deck is None else degrees(condition.deck)),
+        ("downflooding", "no opening is given" if condition.flooding is None else degrees(condition.flooding)),
         ("levers vanish", vanishing(condition.levers)),
     ]
     if condition.cargo is None:

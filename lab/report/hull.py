@@ -117,7 +117,7 @@ def _facts(ship: Loaded) -> list[str]:
         ("GM fluid", f"{ship.metacentric_height:.3f} m"),
         ("list", f"{_list(ship.list)}; judged to {ship.side}"),
         ("deck edge under", sheet.degrees(ship.deck, "not up to 90 deg")),
-        ("downflooding", sheet.degrees(ship.flooding, "not up to 90 deg") if ship.flooding else "no opening is given"),
+        ("downflooding", _downflooding(ship.flooding)),
         ("levers vanish", sheet.vanishing(ship.levers)),
     ]
     if ship.grain:
@@ -125,6 +125,10 @@ def _facts(ship: Loaded) -> list[str]:
         facts.append(("grain", f"{moment:.5g} t m / {total.mass:.5g} t: arm {ship.assumed_arm:.3f} m upright"))
     width = max(len(name) for name, _ in facts)
     return [f"  {name:<{width}}  {text}" for name, text in facts]
+
+
+def _downflooding(angle: float | None) -> str:
+    return "no opening is given" if angle is None else sheet.degrees(angle, "not up to 90 deg")
 
 
 def _list(angle: float | None) -> str:

@@ -4,13 +4,15 @@ from dataclasses import dataclass
 from math import isfinite
 
 KINDS = "at least", "at most"
+AFLOAT_NO_MORE = "an opening is under water as she lies"  # the note of each criterion of a ship that floods at rest
 
 
 @dataclass(frozen=True)
 class Criterion:
     """One requirement of a code: `rule` names its paragraph, `what` is measured, `limit` and `attained` are in `unit`.
 
-    `attained` is infinite where there is no angle of equilibrium. `note` says what a reader must know of the numbers.
+    `attained` is infinite where there is no angle of equilibrium, or where she floods before she reaches it. `note`
+    says what a reader must know of the numbers.
     """
 
     rule: str

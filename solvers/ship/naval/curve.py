@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 FINE = 2001  # points at which crossings and the largest lever are first looked for
+NOTHING = 1e-12  # of the largest lever: so little counts as none
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,15 +65,29 @@ class Levers:
         return float(brentq(self._spline, heel[found[0]], heel[found[0] + 1])) if len(found) else None
 
     def equilibrium(self) -> float | None:
-        """The heel (rad) at which she lies, nearest to upright on the side that pulls her; None: there is none."""
+        """The heel (rad) at which she lies, nearest to upright on the side that pulls her; None: there is none.
+
+        A ship that nothing pulls and that does not stand upright lolls to the side that is looked at.
+        """
         upright = float(self._spline(0.0))
+        if abs(upright) <= NOTHING * float(np.abs(self.lever).max()):
+            return 0.0 if self.metacentric_height > 0.0 else self.crossing(0.0)
         if upright < 0.0:
             return self.crossing(0.0)
-        if upright == 0.0 and self.metacentric_height > 0.0:
-            return 0.0
         back = Levers(-self.heel[::-1], -self.lever[::-1])
         found = back.crossing(0.0)
         return None if found is None else -found
+
+    def reach(self, flooding: float | None = None) -> float:
+        """The heel (rad) up to which her levers count: the curve's end, or the `flooding` angle.
+
+        There a ship has entirely lost her stability (2008 IS Code, part B, chapter 3, calculation of stability curves);
+        0 if an opening is under water as she lies.
+        """
+        last = float(self.heel[-1])
+        if flooding is None or flooding >= last:
+            return last
+        return flooding if flooding > max(self.equilibrium() or 0.0, 0.0) else 0.0
 
     def highest(self, begin: float, end: float) -> float:
         """The heel (rad) of the largest lever between two heels (rad)."""

@@ -12,7 +12,7 @@ from math import inf, radians
 
 import numpy as np
 
-from solvers.ship.naval.criteria import Criterion
+from solvers.ship.naval.criteria import AFLOAT_NO_MORE, Criterion
 from solvers.ship.naval.curve import Levers
 
 FORTY = radians(40.0)
@@ -82,22 +82,27 @@ def criteria(
 
     The metacentric height (m) is after correction for free surfaces. The deck's edge counts for ships built from 1994.
     """
-    found = residual(levers, arm, flooding)
+    found, stands = residual(levers, arm, flooding), levers.reach(flooding)
     steepest = STEEPEST if deck is None else min(STEEPEST, deck)
-    why = "deck edge" if steepest < STEEPEST else ""
+    heel, why = found.heel, "deck edge" if steepest < STEEPEST else ""
+    if flooding is not None and flooding <= heel < inf:
+        heel, why = inf, f"she floods at {np.degrees(flooding):.1f} deg, before {np.degrees(heel):.1f} deg"
     named = found.end == inf or found.ends_at == "40 deg"
     reach = f"up to {found.ends_at}" + ("" if named else f", {np.degrees(found.end):.1f} deg")
+    if not stands:
+        metacentric_height, heel, why = 0.0, inf, AFLOAT_NO_MORE
     return (
         Criterion(
-            "Grain Code A 7.1.1",
-            "heel from the shift of grain",
-            "at most",
-            *np.degrees([steepest, found.heel]),
-            "deg",
-            why,
+            "Grain Code A 7.1.1", "heel from the shift of grain", "at most", *np.degrees([steepest, heel]), "deg", why
         ),
         Criterion("Grain Code A 7.1.2", "residual area", "at least", LEAST_AREA, found.area, "m rad", reach),
         Criterion(
-            "Grain Code A 7.1.3", "GM, corrected for free surfaces", "at least", LEAST_GM, metacentric_height, "m"
+            "Grain Code A 7.1.3",
+            "GM, corrected for free surfaces",
+            "at least",
+            LEAST_GM,
+            metacentric_height,
+            "m",
+            "" if stands else AFLOAT_NO_MORE,
         ),
     )

@@ -113,11 +113,11 @@ def criteria(
     found = weather(levers, ship, flooding)
     most = STEADY if deck is None else min(STEADY, OF_DECK * deck)
     note = f"l_w1 {found.wind:.3f} m, roll {np.degrees(found.roll):.1f} deg to windward, T {ship.period:.1f} s"
-    ratio = found.b / found.a if found.a > 0.0 else inf
+    ratio, heel = found.b / found.a if found.a > 0.0 else inf, found.heel
+    if flooding is not None and flooding <= heel < inf:
+        heel, note = inf, f"she floods at {np.degrees(flooding):.1f} deg; {note}"
     return (
-        Criterion(
-            "IS Code A 2.3.1.2", "heel under steady wind", "at most", *np.degrees([most, found.heel]), "deg", note
-        ),
+        Criterion("IS Code A 2.3.1.2", "heel under steady wind", "at most", *np.degrees([most, heel]), "deg", note),
         Criterion(
             "IS Code A 2.3.1.4",
             "area b over area a",

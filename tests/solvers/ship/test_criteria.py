@@ -99,6 +99,48 @@ def test_criteria_on_levers_each_met_and_missed():
     assert intact.criteria(sine(0.5, 70.0), 0.8, flooding=radians(20.0))[2].attained == 0.0
 
 
+def test_levers_beyond_flooding_count_for_nothing():
+    """Flooding at 27.1 deg: no lever and no area from 30 deg on, the largest lever there, areas as integrals."""
+    top, end = radians(70.0), radians(27.1)
+    found = intact.criteria(sine(0.5, 70.0), 0.8, flooding=end)
+    whole = 0.5 * top / pi * (1.0 - cos(pi * end / top))
+    attained = [whole, whole, 0.0, 0.0, 27.1, 0.8]
+    assert [one.attained for one in found] == pytest.approx(attained, rel=1e-6, abs=1e-12)
+    assert verdicts(found) == [True, True, False, False, True, True]
+    late = intact.criteria(sine(0.5, 70.0), 0.8, flooding=radians(31.0))
+    assert late[3].attained == pytest.approx(0.5 * sin(pi * 31.0 / 70.0), rel=1e-6)  # still rising there
+    assert [one.note for one in found[:5]] == ["up to the flooding angle, 27.1 deg"] * 5
+
+
+def test_ship_that_lies_with_an_opening_under_water_meets_nothing():
+    """No row of any code passes: the opening is under upright, or before the angle at which she lies."""
+    heel, arm = np.radians(np.arange(-60.0, 91.0)), grain_code.straight_line(0.05)
+    ship = weather.Exposed(160.0, BREADTH, DRAUGHT, 9.0, 20_000.0, 0.8, 2.0, 2000.0, 12.0)
+    listed = Levers(heel, np.sin(2.0 * heel) - sin(radians(10.0)))  # lies at 5 deg
+    lolled = Levers(heel, np.sin(heel) * (np.tan(heel) ** 2 - np.tan(radians(5.0)) ** 2) / (1.0 + heel**4))
+    assert np.degrees(lolled.equilibrium()) == pytest.approx(5.0, abs=1e-4)
+    for levers, flooding in ((sine(1.2, 80.0), 0.0), (listed, radians(4.0)), (lolled, radians(4.0))):
+        rows = [
+            *intact.criteria(levers, 1.5, flooding),
+            *grain_code.criteria(levers, arm, 1.5, flooding=flooding),
+            *weather.criteria(levers, ship, flooding=flooding),
+        ]
+        assert not any(verdicts(rows)), [one for one in rows if one.passed]
+
+
+def test_heel_beyond_flooding_is_no_heel_she_lies_at():
+    """The shift of grain and the wind would heel her by less than is allowed, but the opening is under before."""
+    levers, arm = sine(1.2, 80.0), grain_code.straight_line(0.3)
+    heel = np.degrees(grain_code.residual(levers, arm).heel)
+    assert 5.0 < heel < 12.0
+    found = grain_code.criteria(levers, arm, 1.5, flooding=radians(5.0))
+    assert verdicts(found) == [False, False, True]
+    assert found[0].note == f"she floods at 5.0 deg, before {heel:.1f} deg"
+    ship = weather.Exposed(160.0, BREADTH, DRAUGHT, 9.0, 20_000.0, 0.8, 2.0, 6000.0, 12.0)
+    assert verdicts(weather.criteria(sine(0.8, 80.0), ship)) == [True, True]
+    assert verdicts(weather.criteria(sine(0.8, 80.0), ship, flooding=radians(2.0))) == [False, False]
+
+
 def test_weather_by_hand():
     """Worked by hand from the code's tables: B/d 2.783, Cb 0.817, GM 2 m."""
     ship = weather.Exposed(160.0, BREADTH, DRAUGHT, MIDDLE - 2.0, DISPLACEMENT, 0.817, 2.0, 1500.0, 10.0)
