@@ -55,6 +55,18 @@ TABLE = click.Path(path_type=Path, dir_okay=False)
     "--scale", type=click.FloatRange(1e-4, 1e4), default=1.0, show_default=True, help="Metres in a surface's unit."
 )
 @click.option(
+    "--lbp", type=click.FloatRange(0, 1e3, min_open=True), metavar="M", help="Her length between perpendiculars, m."
+)
+@click.option(
+    "--ap", type=float, default=0.0, show_default=True, help="Place x of the aft perpendicular, m; with --lbp."
+)
+@click.option(
+    "--lwl",
+    type=click.FloatRange(0, 1e3, min_open=True),
+    metavar="M",
+    help="Her length in the waterline, m, for the weather criterion; as her stations show it without.",
+)
+@click.option(
     "--at", type=float, metavar="X", help="Also print the section at X (m) as the outline of a preset's ship."
 )
 @out_option("for tables and figure", "renders/hull/NAME")

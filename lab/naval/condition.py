@@ -193,7 +193,7 @@ def _form(ship: Ship, scale: float) -> Form:
         return prism(Section(ship.corners * scale), (ship.length or 1.0) * scale)
     form = whole_form(ship)
     sections = tuple(None if one is None else Section(one.outline * scale) for one in form.sections)
-    return Form(form.x * scale, sections)
+    return Form(form.x * scale, sections, ship.length * scale)
 
 
 def _angle(found: float | None, points: tuple) -> float | None:

@@ -32,7 +32,8 @@ class Wind:
 class Loaded:
     """A hull with weights, points that must stay dry (n, 3) m by kind, grain in her holds, and the wind on her.
 
-    She trims freely. All that is asked of her is asked to the `side` that she lists to.
+    She trims freely. All that is asked of her is asked to the `side` that she lists to. `lwl` (m) is her length in the
+    waterline; without it that is as her stations show it.
     """
 
     form: Form
@@ -41,6 +42,7 @@ class Loaded:
     points: dict[str, np.ndarray] = field(default_factory=dict)
     grain: tuple[Stowed, ...] = ()
     wind: Wind | None = None
+    lwl: float | None = None
 
     @cached_property
     def level(self) -> np.ndarray:
@@ -112,13 +114,14 @@ class Loaded:
         if self.wind is None:
             return None
         upright, draught = self.upright, self.draughts[2]
+        length = self.lwl or upright.length
         return Exposed(
-            upright.length,
+            length,
             upright.breadth,
             draught,
             self.weights.fluid_vcg,
             self.weights.mass,
-            min(1.0, upright.volume / (upright.length * upright.breadth * draught)),
+            min(1.0, upright.volume / (length * upright.breadth * draught)),
             self.metacentric_height,
             self.wind.area,
             self.wind.lever,

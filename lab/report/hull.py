@@ -10,6 +10,7 @@ from lab.base.errors import LabError
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
+from lab.naval.lengths import between, perpendiculars
 from lab.naval.loaded import Loaded, Wind
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
@@ -30,7 +31,8 @@ WITH_WEIGHTS = "points", "grain", "wind"
 class Asked:
     """What is asked of a hull: files of weights, points, grain and holds, wind (area m², lever m), a section's place.
 
-    The water's density is in kg/m³; `stations` and `scale` (metres in the file's unit) are of surfaces.
+    The water's density is in kg/m³; `stations` and `scale` (metres in the file's unit) are of surfaces. `lbp` and `lwl`
+    are her lengths (m) between perpendiculars, from the aft one at x = `ap` (m), and in the waterline.
     """
 
     density: float = 1025.0
@@ -44,6 +46,9 @@ class Asked:
     keels: float = 0.0
     sharp: bool = False
     at: float | None = None
+    lbp: float | None = None
+    lwl: float | None = None
+    ap: float = 0.0
 
 
 def read_form(path: Path, stations: int, scale: float) -> Form:
@@ -62,12 +67,16 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
         if getattr(asked, name) and not asked.weights:
             raise LabError(f"--{name}: needs --weights, by which she floats; give both.")
     form, water = read_form(path, asked.stations, asked.scale), Water(asked.density)
+    form = between(form, asked.lbp, asked.lwl, asked.ap)
     try:
         written = {
             "hydrostatics": tables.hydrostatics(form, water, DEEPEST * form.depth),
             "cross-curves": tables.cross_curves(form, water, DEEPEST * form.depth),
         }
-        lines = [f"{path.name}: {len(form.x)} stations, {form.perpendiculars:.5g} m, depth {form.depth:.4g} m"]
+        lines = [
+            f"{path.name}: {len(form.x)} stations over {np.ptp(form.x):.5g} m, depth {form.depth:.4g} m",
+            f"perpendiculars {perpendiculars(form)}",
+        ]
         holds = read_holds(asked.holds, form) if asked.holds else {}
         written |= {f"hold-{name}": tables.hold(hold) for name, hold in holds.items()}
         if asked.weights:
@@ -90,7 +99,7 @@ def _judged(form: Form, water: Water, asked: Asked, holds: dict[str, Hold], fold
     points = read_points(asked.points) if asked.points else {}
     grain = tuple(read_stowed(asked.grain, holds)) if asked.grain else ()
     wind = Wind(*asked.wind, asked.keels, asked.sharp) if asked.wind else None
-    ship = Loaded(form, water, total, points, grain, wind)
+    ship = Loaded(form, water, total, points, grain, wind, asked.lwl)
     rows = sheet.rows(ship)
     save_axes(folder / "righting-levers.png", name, lambda axes: draw_levers(axes, ship))
     written = {
