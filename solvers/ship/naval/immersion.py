@@ -38,7 +38,10 @@ def heel_at_immersion(
 
 
 def deck_edges(form: Form) -> np.ndarray:
-    """The deck's edges (n, 3) m at the stations, both sides: where the side ends that is steeper than 45°."""
+    """The deck's edges (n, 3) m at the stations, both sides: where the side ends.
+
+    Side is what is steeper than 45° or opens outwards, as the flare of a bow or a counter does.
+    """
     found = []
     for x, section in zip(form.x, form.sections, strict=True):
         if section is not None:
@@ -47,12 +50,12 @@ def deck_edges(form: Form) -> np.ndarray:
 
 
 def _edges(section: Section) -> list[tuple[float, float]]:
-    """The highest ends (m) of steep edges: to starboard the outline goes up, to port it comes down."""
+    """The highest ends (m) of the sides' edges: to starboard the outline goes up, to port it comes down."""
     begin, end = section.outline, np.roll(section.outline, -1, axis=0)
     way = end - begin
-    steep = np.abs(way[:, 1]) >= np.abs(way[:, 0])
+    of_side = (np.abs(way[:, 1]) >= np.abs(way[:, 0])) | (way[:, 0] > 0.0)  # on either side way y > 0 opens outwards
     found = []
-    for side, tops in ((steep & (way[:, 1] > 0.0), end), (steep & (way[:, 1] < 0.0), begin)):
+    for side, tops in ((of_side & (way[:, 1] > 0.0), end), (of_side & (way[:, 1] < 0.0), begin)):
         if side.any():
             y, z = tops[side][int(np.argmax(tops[side][:, 1]))]
             found.append((float(y), float(z)))

@@ -129,6 +129,14 @@ def test_deck_edge_and_opening_of_a_box():
     assert np.tan(edge.deck) == pytest.approx(1.0 / HALF, rel=1e-6)
 
 
+def test_deck_edge_of_a_flared_side_is_its_top():
+    """A counter that opens outwards by 60 deg from upright is side up to the deck, also with a wall below."""
+    counter = Section(np.array([[0.0, 5.0], [1.0, 6.0], [8.0, 9.0], [-8.0, 9.0], [-1.0, 6.0]]))
+    assert sorted(map(tuple, deck_edges(prism(counter, 50.0))[:2])) == [(0.0, -8.0, 4.0), (0.0, 8.0, 4.0)]
+    lines = read_offsets(Path(str(files_of("presets"))) / "ship" / "s175.csv")
+    assert {z for _, _, z in deck_edges(lines)} == {11.0}  # where her lines end
+
+
 @pytest.mark.slow
 def test_opening_forward_of_a_ship_by_the_head_goes_under_sooner():
     """Trimmed by t she has t x/L less at an opening: the closed form of the even keel, with that draught."""
