@@ -15,6 +15,7 @@ from solvers.ship.section import ROUNDING, Section
 
 HEADER, RECORD = 84, 50  # bytes of a binary file: its head, and each triangle
 INSIDE = 1e-7  # of the length: how far inside its ends the hull is cut there, and beside the mesh's corners
+WELD = 1e-6  # of a cut's size: points this close are one; ten times as far as edges that meet lie apart at INSIDE
 MOST = 2_000_000  # triangles
 
 
@@ -99,12 +100,32 @@ def _section(corners: np.ndarray, faces: np.ndarray, x: float, name: str) -> Sec
     return _closed((a + share * (b - a))[:, 1:])
 
 
-def _closed(outline: np.ndarray) -> Section | None:
-    """A section of a loop's points, those in line with their neighbours left out; None without an area."""
+def _closed(loop: np.ndarray) -> Section | None:
+    """A section of a loop's points (m, 2), without those that say nothing of its shape; None without an area."""
+    size = float(np.ptp(loop, axis=0).max())
+    outline = _simplified(loop, size)
     area = 0.5 * float(outline[:, 0] @ np.roll(outline[:, 1], -1) - outline[:, 1] @ np.roll(outline[:, 0], -1))
-    outline = outline if area > 0.0 else outline[::-1]
-    size = float(np.ptp(outline, axis=0).max())
-    before, after = outline - np.roll(outline, 1, axis=0), np.roll(outline, -1, axis=0) - outline
-    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    outline = outline[np.abs(turn) > ROUNDING * size**2]
-    return Section(outline) if len(outline) > 2 and abs(area) > ROUNDING * size**2 else None
+    if len(outline) < 3 or abs(area) <= ROUNDING * size**2:
+        return None
+    return Section(outline if area > 0.0 else outline[::-1])
+
+
+def _simplified(loop: np.ndarray, size: float) -> np.ndarray:
+    """A loop's points without those at the place of the point before, or in line with their neighbours that are left.
+
+    One is dropped at a time, as what its neighbours are changes with it: a corner and the crossing of a triangle's
+    edge beside it are both in line with the other, and only one of them may go.
+    """
+    weld, turn = WELD * size, ROUNDING * size**2
+    ring = [(float(y), float(z)) for y, z in loop]
+    k = still = 0  # the point in hand; how many before it stay
+    while len(ring) > 2 and still < len(ring) + 2:  # once round, and the two beside the last that was dropped
+        k %= len(ring)
+        (y0, z0), (y1, z1), (y2, z2) = ring[k - 1], ring[k], ring[(k + 1) % len(ring)]
+        same = abs(y1 - y0) <= weld and abs(z1 - z0) <= weld
+        if same or abs((y1 - y0) * (z2 - z1) - (z1 - z0) * (y2 - y1)) <= turn:
+            del ring[k]
+            k, still = k - 1, max(still - 1, 0)
+        else:
+            k, still = k + 1, still + 1
+    return np.array(ring)

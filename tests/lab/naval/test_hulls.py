@@ -1,14 +1,12 @@
 """Hulls from offsets and surfaces: closed forms, published hulls, one against the other, and what is refused."""
 
-import struct
-from math import pi
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lab.assembly.offsets import from_offsets, read_offsets, rows_of
+from lab.assembly.offsets import from_offsets, read_offsets
 from lab.cli.naval import hull
 from lab.naval.surface import read_surface
 from lab.naval.weights import read_weights
@@ -18,6 +16,7 @@ from solvers.ship.naval.form import prism
 from solvers.ship.section import box
 from solvers.ship.water import Water
 from tests.oracles.presets import error_of
+from tests.oracles.surfaces import stl, tube
 
 SEA, FRESH = Water(1025.0), Water(1000.0)
 LENGTH, BREADTH, DRAUGHT = 100.0, 10.0, 6.25  # m, of Wigley's hull
@@ -106,45 +105,6 @@ def test_series_60_has_its_published_coefficients():
     assert 100.0 * (found.lcb / length - 0.5) == pytest.approx(0.5, abs=0.15)
 
 
-def tube(points: np.ndarray) -> np.ndarray:
-    """Triangles (n, 3, 3) of a closed surface from rings of points (stations, k, 3)."""
-    ahead, beside = points[1:], np.roll(points, -1, axis=1)
-    sides = [(points[:-1], ahead, beside[:-1]), (beside[:-1], ahead, beside[1:])]
-    found = [np.stack(side, axis=2).reshape(-1, 3, 3) for side in sides]
-    for ring in (points[0], points[-1]):
-        middle = np.broadcast_to(ring.mean(axis=0), ring.shape)
-        found.append(np.stack([ring, np.roll(ring, -1, axis=0), middle], axis=1))
-    return np.concatenate(found)
-
-
-def stl(path: Path, triangles: np.ndarray) -> Path:
-    """A binary STL file."""
-    body = b"".join(struct.pack("<12fH", 0, 0, 0, *map(float, t.ravel()), 0) for t in triangles)
-    path.write_bytes(b" " * 80 + struct.pack("<I", len(triangles)) + body)
-    return path
-
-
-def cylinder(corners: int) -> np.ndarray:
-    """Rings (21, k, 3) of a round barge of 5 m radius, 40 m long."""
-    angle = 2.0 * pi * (np.arange(corners) + 0.5) / corners
-    x = np.linspace(0.0, 40.0, 21)[:, None] * np.ones(corners)
-    return np.stack(
-        [x, np.broadcast_to(5.0 * np.cos(angle), x.shape), np.broadcast_to(5.0 + 5.0 * np.sin(angle), x.shape)], axis=-1
-    )
-
-
-def test_surface_and_offsets_are_the_same_hull(tmp_path):
-    """A round barge's volume converges to π r² L/2 at half depth, and its offsets, written out, give it again."""
-    off = []
-    for corners in (32, 64):
-        form = read_surface(stl(tmp_path / "barge.stl", tube(cylinder(corners))), 11)
-        found = form.hydrostatics(0.5 * form.depth, FRESH)
-        off.append(abs(found.volume - 0.5 * pi * 25.0 * 40.0) / (0.5 * pi * 25.0 * 40.0))
-        again = of(list(rows_of(form))).hydrostatics(0.5 * form.depth, FRESH)
-        assert vars(again) == pytest.approx(vars(found), rel=1e-5)
-    assert off[1] < 0.002 and off[0] / off[1] == pytest.approx(4.0, rel=0.1)
-
-
 def test_wigley_as_a_surface(tmp_path):
     rings, given = [], wigley(31, 21)
     for x in np.unique(given[1:-1, 0])[1:-1]:
@@ -156,16 +116,6 @@ def test_wigley_as_a_surface(tmp_path):
     same = of(given[(given[:, 0] > 0.0) & (given[:, 0] < LENGTH)])
     one, other = (hull.hydrostatics(DRAUGHT, FRESH) for hull in (form, same))
     assert (one.volume, one.km, one.bml) == pytest.approx((other.volume, other.km, other.bml), rel=1e-5)
-
-
-def test_text_surface_and_scale(tmp_path):
-    lines = ["solid hull"]
-    for triangle in tube(1000.0 * cylinder(16)):
-        corners = "".join(f"vertex {x:.6e} {y:.6e} {z:.6e}\n" for x, y, z in triangle)
-        lines.append(f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet")
-    (tmp_path / "hull.stl").write_text("\n".join([*lines, "endsolid"]))
-    form = read_surface(tmp_path / "hull.stl", 5, scale=0.001)
-    assert form.volume == pytest.approx(40.0 * 0.5 * 16 * 25.0 * np.sin(2.0 * pi / 16), rel=1e-5)
 
 
 def test_command_with_weights(tmp_path):
@@ -224,16 +174,6 @@ def test_offsets_that_bound_no_hull():
     assert "half_breadth below 0" in error_of(of, [*good[:5], (9, 2, -1)])
     assert "three stations" in error_of(of, good[:2])
     assert "no station with an area" in error_of(of, [(x, z, 0) for x in (0, 5, 9) for z in (0, 2)])
-
-
-def test_surfaces_that_are_no_hull(tmp_path):
-    whole = tube(cylinder(12))
-    assert "has holes, 3 of its edges" in error_of(read_surface, stl(tmp_path / "a.stl", whole[1:]), 5)
-    (tmp_path / "b.stl").write_text("nothing of the kind")
-    assert "no STL file" in error_of(read_surface, tmp_path / "b.stl", 5)
-    twins = np.concatenate([whole, whole + np.array([0.0, 30.0, 0.0])])
-    assert "several pieces" in error_of(read_surface, stl(tmp_path / "c.stl", twins), 5)
-    assert "cannot be read" in error_of(read_surface, tmp_path / "none.stl", 5)
 
 
 def test_weights_that_are_none(tmp_path):
