@@ -15,6 +15,7 @@ import numpy as np
 from solvers.machine.errors import Unavailable
 
 ROUNDING = 1e-12  # of the section's size: shorter lengths count as zero
+PAIRS = 1_000_000  # of edges that are compared at once
 
 
 @dataclass(frozen=True)
@@ -212,25 +213,31 @@ def _enclosed(outline: np.ndarray) -> float:
 def _first_crossing(outline: np.ndarray, edges: np.ndarray) -> tuple[int, int] | None:
     """The first two edges that share a point they should not, or None."""
     count = len(outline)
-    for k in range(count):
-        after = (k + 1) % count
-        turn, ahead = _cross(edges[k], edges[after]), edges[k] @ edges[after]
-        if ahead < 0.0 and abs(turn) <= ROUNDING * -ahead:
-            return min(k, after), max(k, after)  # folds back upon itself
-        others = np.array([j for j in range(k + 2, count) if (j + 1) % count != k], dtype=int)
-        meets = _meet(outline[k], edges[k], outline[others], edges[others])
-        if meets.any():
-            return k, int(others[meets.argmax()])
-    return None
+    number = np.arange(count)
+    after = np.roll(edges, -1, axis=0)
+    turn, ahead = _cross(edges, after), (edges * after).sum(axis=1)
+    folds = np.flatnonzero((ahead < 0.0) & (np.abs(turn) <= ROUNDING * -ahead))  # edges on which the next folds back
+    fold = int(folds[0]) if len(folds) else count
+    lower, upper = np.minimum(outline, outline + edges), np.maximum(outline, outline + edges)
+    rows = max(1, PAIRS // count)
+    for begin in range(0, min(count, fold), rows):
+        k = number[begin : begin + rows, None]
+        near = (number >= k + 2) & ((number + 1) % count != k)
+        for y in (0, 1):
+            near &= (lower[:, y] <= upper[k, y]) & (upper[:, y] >= lower[k, y])
+        one, other = np.nonzero(near)
+        one += begin
+        found = np.flatnonzero(_meet(outline[one], edges[one], outline[other], edges[other]))
+        if len(found) and one[found[0]] < fold:
+            return int(one[found[0]]), int(other[found[0]])
+    return None if fold == count else (min(fold, (fold + 1) % count), max(fold, (fold + 1) % count))
 
 
 def _meet(start: np.ndarray, along: np.ndarray, starts: np.ndarray, alongs: np.ndarray) -> np.ndarray:
-    """Whether a segment shares a point with each of several others."""
+    """Whether segments (n, 2) whose boxes overlap share a point with as many others, each with one."""
     a, b = _cross(along, starts - start), _cross(along, starts + alongs - start)
     c, d = _cross(alongs, start - starts), _cross(alongs, start + along - starts)
-    lower, upper = np.minimum(start, start + along), np.maximum(start, start + along)
-    boxes = (np.minimum(starts, starts + alongs) <= upper) & (np.maximum(starts, starts + alongs) >= lower)
-    return (a * b <= 0.0) & (c * d <= 0.0) & boxes.all(axis=-1)
+    return (a * b <= 0.0) & (c * d <= 0.0)
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
