@@ -195,6 +195,8 @@ def _data(
         "preset": recording.name,
         "based_on": recording.preset.based_on,
         "status": recording.status,
+        "created": recording.created,
+        "version": str(recording.versions.get("cargo-shift-lab", "")),
         "measures": {name: value.as_json() for name, value in values.items()},
         "cost": {
             "wall_s": wall,

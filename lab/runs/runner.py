@@ -79,7 +79,8 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
     with open_recording(folder) as recording:
         loaded, complete = recorded_preset(recording), recording.complete
         rows, changed = recording.series.rows, recording.versions != versions()
-    if complete and reported(folder, "complete"):
+        told = complete and reported(recording)
+    if told:
         raise LabError(f"{folder} is complete: there is nothing to resume.")
     with Progress(quiet) as progress, hint(folder), only_one(folder):
         if complete:
@@ -139,11 +140,13 @@ def report(
         return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings, spent))
 
 
-def reported(folder: Path, status: str) -> bool:
-    """Whether the folder has the summary of its recording, with this status."""
+def reported(recording: Recording) -> bool:
+    """Whether the summary beside a recording is of it as it is now."""
     try:
-        return json.loads((folder / "summary.json").read_text(encoding="utf-8"))["status"] == status
-    except (OSError, ValueError, KeyError, TypeError):
+        told = json.loads((recording.folder / "summary.json").read_text(encoding="utf-8"))
+        created = told.get("created", recording.created)  # earlier versions did not write it
+        return (told["status"], created) == (recording.status, recording.created)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return False
 
 

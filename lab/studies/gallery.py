@@ -1,7 +1,8 @@
 """cargolab gallery: a poster, a clip and the numbers of every preset, and a page that shows them all.
 
 The page is plain HTML beside its pictures, so it opens from the disk. A preset is run in its quick variant, if it has
-one, in the folder `runs`; runs that are done are not repeated.
+one, in the folder `runs`. What is done is not repeated, as long as it is of the preset as it is now, with as many beds;
+a card says which version made it.
 """
 
 import json
@@ -22,8 +23,8 @@ from lab.recording import Recording, open_recording
 from lab.report.numbers import number
 from lab.report.page import render
 from lab.report.summary import TELLING
-from lab.runs.runner import reported, resume_run, run_preset
-from solvers.machine.errors import BadState
+from lab.studies.reproduce.findings import asked
+from lab.studies.reproduce.runs import Batch, carry_out
 
 WIDTH, HEIGHT = 640, 360  # pixels
 LONGEST = 8.0  # s of a clip
@@ -50,38 +51,36 @@ def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False, be
     chosen = [name for name in shown if not wanted or name.startswith(tuple(wanted))]
     with Progress(quiet) as progress:
         for name in chosen:
-            progress.say(f"{name} …")
-            _show(name, out, beds)
+            _show(name, out, beds, progress)
             _write_page(every, out)
         _show_cargoes(out)
     return _write_page(every, out)
 
 
-def _show(name: str, out: Path, beds: int) -> None:
+def _show(name: str, out: Path, beds: int, progress: Progress) -> None:
     """Run a preset, or what is left of its run, and write its poster, its clip and its numbers."""
-    clip = out / f"{_plain(name)}.mp4"
-    if clip.exists():
-        return
-    folder = out / "runs" / name
-    try:
-        if reported(folder, "complete"):
-            pass
-        elif (folder / "recording.h5").exists():
-            resume_run(folder, video=False, plots=False, quiet=True)
-        else:
-            cheapest = _cheapest(name, names())
-            number = max(beds, repeats_of_twin(cheapest))
-            run_preset(cheapest, {"run.repeats": number}, folder, video=False, plots=False, quiet=True)
-    except BadState:  # its page says so
-        pass
+    clip, path, folder = out / f"{_plain(name)}.mp4", out / f"{_plain(name)}.json", out / "runs" / name
+    cheapest = _cheapest(name, names())
+    batch = Batch(cheapest, {"run.repeats": max(beds, repeats_of_twin(cheapest))})
+    wanted = asked({"": batch})
+    if clip.exists() and path.exists():
+        told = _told(path)
+        if told.get("asked") == wanted:
+            progress.say(f"{name}: kept, made by version {told['version']} on {told['date']}")
+            return
+        progress.say(f"{name}: what is there is of another preset or of other beds; it is made anew …")
+        clip.unlink()  # else it would count as made where this is cut short
+    else:
+        progress.say(f"{name} …")
+    carry_out(batch, folder, quiet=True, by="the gallery")
     with open_recording(folder) as recording:
         lasts, speed = float(recording.series["time"][-1]), recording.preset.video.speed
         made = _made(recording)
     card = poster(folder, out / f"{_plain(name)}.png", time=telling_time(folder), width=WIDTH, height=HEIGHT)
     lighten(card)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    told = json.dumps({**_telling(summary), **made}, indent=1)
-    (out / f"{_plain(name)}.json").write_text(told + "\n", encoding="utf-8")
+    told = json.dumps({**_telling(summary), **made, "asked": wanted}, indent=1)
+    path.write_text(told + "\n", encoding="utf-8")
     render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, ceil(10.0 * lasts / LONGEST) / 10.0))
 
 

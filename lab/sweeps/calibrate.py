@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.base.lock import only_one
 from lab.preset.fields import dotted_key, taken_by
 from lab.preset.find import load
 from lab.preset.merge import nested
@@ -27,7 +28,8 @@ from lab.sweeps.calibration_report import Calibration, Trial, write_report
 from lab.sweeps.dry_run import available_measures
 from lab.sweeps.grid import define_sweep
 from lab.sweeps.inverse import LEAST_BEDS, Response, beds_for, crossings, fitted, misfit, solved
-from lab.sweeps.report import Point, numeric
+from lab.sweeps.point import Point
+from lab.sweeps.report import numeric
 from lab.sweeps.request import Request, check_folder, read_request, write_request
 from lab.sweeps.sweep import SweepResult, run_sweep
 
@@ -85,11 +87,13 @@ def calibrate(
     preset = os.path.abspath(name) if os.path.isfile(name) else str(name)
     request = Request(preset, target, vary, json.loads(json.dumps(nested(overrides or {}), default=str)))
     folder = Path(out) if out is not None else RENDERS / f"{Path(preset).stem}-calibration"
-    check_folder(request, folder)
+    check_folder(request, folder)  # early, and again under the lock
     plan = parse_request(request)
-    write_request(request, folder)
     try:
-        return _run_rounds(plan, folder, quiet, cluster)
+        with only_one(folder):
+            check_folder(request, folder)
+            write_request(request, folder)
+            return _run_rounds(plan, folder, quiet, cluster)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"interrupted; continue with: cargolab resume {shlex.quote(str(folder))}") from None
 

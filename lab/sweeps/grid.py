@@ -14,7 +14,7 @@ from lab.assembly.water import most_drops
 from lab.base.errors import LabError
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import resolved_from, to_table
-from lab.sweeps.alike import alike, apart
+from lab.runs.alike import alike, apart
 from lab.sweeps.axes import values
 
 FORMAT = "cargo-shift-lab sweep 1"

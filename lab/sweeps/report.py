@@ -13,12 +13,13 @@ from matplotlib.figure import Figure
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.base.text import cell, code, inline, one_line, printable
-from lab.measures.value import Value, read_values
+from lab.measures.value import Value
 from lab.paint.video import MOST_IN_GRID, render_grid
 from lab.recording import open_recording
 from lab.report.numbers import BARS, RULE, number
 from lab.report.plots import STYLE
 from lab.report.summary import headlines
+from lab.sweeps.point import Point
 
 FIGURES = 3  # number of measures with a figure
 FAMILIES = 6  # curves in one figure; more are drawn as a map
@@ -57,37 +58,6 @@ def write_report(
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error
     files["summary"] = page
     return rows, _text(name, points, files)
-
-
-class Point:
-    """One point of a sweep: its setting and, if it was run, its status, measures by name and warnings."""
-
-    def __init__(self, setting: Mapping[str, object], folder: Path) -> None:
-        self.setting, self.folder = setting, folder
-        self.status, self.measures, self.warnings = "not run", {}, []
-        path = folder / "summary.json"
-        try:
-            data = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError):  # missing, or half written by a killed run
-            return
-        except RecursionError as error:
-            raise _damaged(path) from error
-        try:
-            self.measures = read_values(data["measures"])
-            self.status, self.warnings = data["status"], list(data["warnings"])
-            if not all(isinstance(text, str) for text in (self.status, *self.warnings)):
-                raise ValueError("its status or a warning is not a text")
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
-            raise _damaged(path) from error
-
-    @property
-    def caption(self) -> str:
-        """The setting in a few words; a dotted key is shortened to its last part."""
-        return one_line(", ".join(f"{key.split('.')[-1]} {value}" for key, value in self.setting.items()))
-
-
-def _damaged(path: Path) -> LabError:
-    return LabError(f"{path} is damaged: remove it and resume the sweep.")
 
 
 def numeric(values: Sequence) -> tuple[np.ndarray, str] | None:
@@ -274,6 +244,9 @@ def _page(
     for k, point in enumerate(points):
         for warning in point.warnings:
             warned[warning].append(str(k))
+    versions = sorted({point.version for point in points} - {""})
+    if len(versions) > 1:
+        yield f"\n**Warning**: the points were run by different versions of the lab: {inline(', '.join(versions))}."
     yield from (f"\n**Warning** (points {', '.join(where)}): {inline(warning)}" for warning, where in warned.items())
     yield "\n## Files\n"
     yield from (f"- [{key.replace('_', ' ')}]({path.name})" for key, path in files.items())

@@ -16,7 +16,7 @@ from lab.base.progress import Progress
 from lab.recording import FILE_NAME as RECORDING
 from lab.recording import open_recording
 from lab.runs.batch import Run, prepare, run_batch
-from lab.runs.belongs import check_belongs
+from lab.runs.belongs import check_asked, check_belongs
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.runs.runner import RENDERS, hint, report, reported
 from lab.sweeps.cluster import Errand, fetch
@@ -60,18 +60,19 @@ def run_sweep(
     """
     sweep = define_sweep(name, axes, overrides)
     folder = Path(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
-    _check_folder(sweep, folder)
     return _complete(sweep, folder, video, quiet, cluster)
 
 
 def errands(
     name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None, folder: Path
 ) -> list[Errand]:
-    """Begin a sweep (arguments as for `run_sweep`); returns the batches left for a cluster to run. Raises LabError."""
+    """Begin a sweep (arguments as for `run_sweep`); returns the batches left for a cluster to run. Raises LabError.
+
+    The caller has locked the folder.
+    """
     sweep = define_sweep(name, axes, overrides)
-    _check_folder(sweep, folder)
     plan = list(_plan(sweep))
-    sweep.write(folder)
+    _begin(sweep, folder)
     return _errands(sweep, folder, plan)
 
 
@@ -85,8 +86,11 @@ def point_folder(folder: Path, number: int) -> Path:
     return folder / "points" / f"{number:03}"
 
 
-def _check_folder(sweep: Sweep, folder: Path) -> None:
-    """Raise LabError if the folder holds another sweep or a run."""
+def _begin(sweep: Sweep, folder: Path) -> None:
+    """Write the sweep to its folder, which the caller has locked.
+
+    Raises LabError if it cannot be written, or holds another sweep, a run, or a point that was run with other values.
+    """
     if (folder / FILE_NAME).exists():
         if differs := read_sweep(folder).differs_from(sweep):
             raise LabError(
@@ -95,6 +99,9 @@ def _check_folder(sweep: Sweep, folder: Path) -> None:
             )
     elif (folder / RECORDING).exists():
         raise LabError(f"{folder} holds a recording: choose another folder.")
+    for number, point in enumerate(sweep.points):
+        check_asked(point_folder(folder, number), point.resolved, "this sweep")
+    sweep.write(folder)
 
 
 def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[Errand]:
@@ -112,9 +119,9 @@ def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[
 def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str | None = None) -> SweepResult:
     """Run the points that are not done, on the cluster as far as possible, and summarise all points."""
     plan = list(_plan(sweep))  # reports an impossible point early
-    sweep.write(folder)
     folders = [point_folder(folder, number) for number in range(len(sweep.points))]
     with Progress(quiet) as progress, hint(folder, FILE_NAME), only_one(folder):
+        _begin(sweep, folder)
         try:
             if cluster:
                 fetch(_errands(sweep, folder, plan), cluster, progress)
@@ -194,7 +201,7 @@ def state_of(folder: Path) -> str:
         return "open"
     with open_recording(folder) as recording:
         ended = recording.complete or recording.status.startswith("stopped: world")
-        return "open" if not ended else "done" if reported(folder, recording.status) else "recorded"
+        return "open" if not ended else "done" if reported(recording) else "recorded"
 
 
 def _plan(sweep: Sweep) -> Iterator[list[int]]:

@@ -5,14 +5,29 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.recording import versions
+from lab.report.kept import processor
+from lab.studies.engine import code
+
+MADE = "made by"  # the name under which a file says what made it
+
 
 def remembered(path: Path, said: str, make: Callable[[], Mapping[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Arrays by name from a .npz file; where it is missing this is `said`, and they are made and put there."""
-    if not path.is_file():
-        print(said, flush=True)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_suffix(".part.npz")
-        np.savez(part, **make())
-        part.replace(path)
+    """Arrays by name from a .npz file; where it is missing this is `said`, and they are made and put there.
+
+    So they are where another code, other packages or another processor made them: a study would tell them as its own.
+    """
+    here = f"{code()} {sorted(versions().items())} {processor()}"
+    if path.is_file():
+        with np.load(path) as found:
+            arrays = dict(found)
+        if str(arrays.pop(MADE, "")) == here:
+            return arrays
+        said = f"{said}, anew: what was kept was made by other code or on another machine"
+    print(said, flush=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part.npz")
+    np.savez(part, **make(), **{MADE: np.array(here)})
+    part.replace(path)
     with np.load(path) as found:
-        return dict(found)
+        return {name: values for name, values in found.items() if name != MADE}

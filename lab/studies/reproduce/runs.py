@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from lab.base.errors import LabError
 from lab.measures.value import Value
 from lab.preset.find import load
 from lab.recording import FILE_NAME, Recording, open_recording
-from lab.runs.runner import recorded_preset, resume_run, run_preset
-from lab.sweeps.alike import alike, apart
+from lab.runs.belongs import check_asked
+from lab.runs.runner import resume_run, run_preset
 from lab.sweeps.cluster import Errand
 from lab.sweeps.grid import FILE_NAME as SWEEP
 from lab.sweeps.grid import read_sweep
@@ -58,8 +57,8 @@ def errands(batch: Batch, folder: Path) -> list[Errand]:
     return [Errand({folder: load(batch.preset, batch.changes)})]
 
 
-def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
-    """Run what has not been run yet. If the watch stops a bed, only its run ends. Raises LabError."""
+def carry_out(batch: Batch, folder: Path, quiet: bool, by: str = "this experiment") -> None:
+    """Run what has not been run yet; `by`: who asks. If the watch stops a bed, only its run ends. Raises LabError."""
     if batch.axes:
         run_sweep(batch.preset, batch.axes, batch.changes, folder, video=False, quiet=quiet)
         return
@@ -67,14 +66,7 @@ def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
         if not (folder / FILE_NAME).exists():
             run_preset(batch.preset, batch.changes, folder, video=False, plots=False, quiet=quiet)
             return
-        with open_recording(folder) as recording:
-            recorded = recorded_preset(recording).resolved
-        asked = load(batch.preset, batch.changes).resolved
-        if not alike(recorded, asked):
-            raise LabError(
-                f"{folder} holds another run than this experiment asks for, with another {apart(recorded, asked)}: "
-                "remove that folder to run it anew."
-            )
+        check_asked(folder, load(batch.preset, batch.changes).resolved, by)
         if state_of(folder) != "done":
             resume_run(folder, video=False, plots=False, quiet=quiet)
     except BadState:  # the recording and the report say so

@@ -10,13 +10,14 @@ from lab.base.errors import LabError
 from lab.preset.find import names
 from lab.studies import gallery
 from lab.studies.gallery import make_gallery, repeats_of_twin
+from lab.studies.reproduce import findings
 
 
 @pytest.mark.parametrize("clip", ["tilting-quick.mp4", None])
 def test_the_page_has_every_preset_and_the_results_of_those_that_ran(clip, tmp_path, monkeypatch):
     made = {"accuracy": "draft", "beds": 3, "version": "0.2.0", "date": "2026-01-02"}
 
-    def show(name, out, beds):
+    def show(name, out, beds, progress):
         told = {"status": "stopped: a grain <fell>", "numbers": {"final_shift": "2.0 diameters (1 bed)"}, **made}
         (out / f"{name.replace('/', '-')}.json").write_text(json.dumps(told))
         if clip:
@@ -64,5 +65,37 @@ def test_a_preset_is_run_filmed_and_not_run_again(tmp_path, monkeypatch):
     assert "(2 beds)" in told["numbers"]["critical_angle"]
     made = {path.name for path in tmp_path.iterdir()}
     assert made == {"index.html", "runs", "tilting-quick.mp4", "tilting-quick.png", "tilting-quick.json"}
-    monkeypatch.setattr(gallery, "run_preset", None)
-    make_gallery(["tilting/quick"], tmp_path, quiet=True)
+    monkeypatch.setattr(gallery, "carry_out", None)
+    make_gallery(["tilting/quick"], tmp_path, quiet=True, beds=2)
+
+
+def test_a_card_of_another_preset_or_of_other_beds_is_made_anew(tmp_path, monkeypatch):
+    """Its place alone says nothing. A run of another preset that lies in the gallery's folder is refused."""
+    kept = {
+        "status": "complete",
+        "numbers": {},
+        "accuracy": "draft",
+        "beds": 2,
+        "version": "0.1.0",
+        "date": "2026-01-02",
+    }
+    batch = gallery.Batch("tilting/quick", {"run.repeats": 2})
+    (tmp_path / "tilting-quick.json").write_text(json.dumps(kept | {"asked": gallery.asked({"": batch})}))
+    (tmp_path / "tilting-quick.mp4").touch()
+    made = []
+
+    def carry_out(batch, folder, **_):
+        made.append(batch)
+        raise LabError("enough")
+
+    monkeypatch.setattr(gallery, "carry_out", carry_out)
+    make_gallery(["tilting/quick"], tmp_path, quiet=True, beds=2)
+    assert made == []
+    with pytest.raises(LabError, match="enough"):
+        make_gallery(["tilting/quick"], tmp_path, quiet=True, beds=3)
+    load = findings.load
+    changed = {"material.friction": 0.1}
+    monkeypatch.setattr(findings, "load", lambda name, changes: load(name, {**changes, **changed}))
+    with pytest.raises(LabError, match="enough"):
+        make_gallery(["tilting/quick"], tmp_path, quiet=True, beds=2)
+    assert [batch.changes["run.repeats"] for batch in made] == [3, 2]

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 
 import lab
 from lab.base.errors import LabError
+from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.recording import open_recording
 from lab.recording.xdmf import write_xdmf
@@ -224,6 +225,49 @@ def test_finished_points_are_not_run_again_and_another_sweep_is_refused(swept, t
         run_sweep("tilting/quick", {"motion.sway.frequency": "1, 4, 600 Hz"}, SMALL, tmp_path / "s", quiet=True)
     with pytest.raises(LabError, match="holds a recording"):
         run_sweep("tilting/quick", AXES, SMALL, swept.points[0], quiet=True)
+
+
+def test_points_of_another_sweep_are_not_taken_for_its_own(swept, tmp_path):
+    """Where its folder has lost the file that says what was swept: by other values, keys or beds."""
+    shutil.copytree(swept.folder, tmp_path / "s")
+    (tmp_path / "s" / "sweep.json").unlink()
+    for axes, others, differs in (
+        ({"motion.sway.frequency": "2, 3, 600 Hz"}, {}, "000 .* another motion.sway.frequency: remove that folder"),
+        ({"motion.sway.frequency": "1, 4, 600 Hz"}, {}, "001 .* another motion.sway.frequency"),
+        (AXES, {"material.friction": 0.1}, "000 .* another material.friction"),
+        (AXES, {"run.seed": 7}, "000 .* another run.seed"),
+    ):
+        with pytest.raises(LabError, match=differs):
+            run_sweep("tilting/quick", axes, {**SMALL, **others}, tmp_path / "s", video=False, quiet=True)
+        assert not (tmp_path / "s" / "sweep.json").exists()
+    again = run_sweep("tilting/quick", AXES, SMALL, tmp_path / "s", video=False, quiet=True)
+    assert again.rows == swept.rows
+
+
+def test_a_summary_of_an_earlier_recording_in_its_place_is_not_taken(swept, tmp_path):
+    """Killed between the end of a run and its summary, where another run had left its own."""
+    shutil.copytree(swept.folder, tmp_path / "s")
+    path = tmp_path / "s" / "points" / "000" / "summary.json"
+    told = json.loads(path.read_text())
+    path.write_text(json.dumps(told | {"created": "2026-01-01T00:00:00+00:00", "measures": {}}))
+    run_sweep("tilting/quick", AXES, SMALL, tmp_path / "s", video=False, quiet=True)
+    assert json.loads(path.read_text())["measures"] == told["measures"]
+
+
+def test_a_sweep_refused_because_another_process_has_its_folder_leaves_that_ones_request(tmp_path):
+    with only_one(tmp_path / "s"), pytest.raises(LabError, match="in use by another run"):
+        run_sweep("tilting/quick", AXES, SMALL, tmp_path / "s", quiet=True)
+    assert list((tmp_path / "s").iterdir()) == []
+
+
+def test_points_run_by_different_versions_are_told_apart(swept, tmp_path):
+    shutil.copytree(swept.folder, tmp_path / "s")
+    path = tmp_path / "s" / "points" / "001" / "summary.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"version": "0.1.0"}))
+    run_sweep("tilting/quick", AXES, SMALL, tmp_path / "s", video=False, quiet=True)
+    page = (tmp_path / "s" / "summary.md").read_text()
+    assert f"run by different versions of the lab: 0.1.0, {lab.__version__}." in page
+    assert "different versions" not in (swept.folder / "summary.md").read_text()
 
 
 def test_an_interrupted_sweep_continues_with_the_remaining_points(swept, tmp_path, monkeypatch):

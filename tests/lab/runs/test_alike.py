@@ -6,7 +6,7 @@ import pytest
 
 from lab.preset.find import load
 from lab.preset.recorded import resolved_from, to_table
-from lab.sweeps.alike import alike, apart
+from lab.runs.alike import alike, apart
 
 
 def test_what_an_earlier_version_wrote_down_of_derived_values_makes_no_difference():
