@@ -6,7 +6,7 @@ in HDF5 itself are not covered: use a recent version.
 """
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from zipfile import ZIP_STORED, ZipFile, ZipInfo
 
@@ -16,8 +16,6 @@ import numpy as np
 from lab.base.errors import Unusable
 from lab.base.memory import SHARE, machine_memory
 
-GROUPS = ("preset", "grains", "water", "tank", "shapes", "series", "frames", "steering", "checks")
-DEEPER = ("tank/parts",)
 ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
 BEYOND = 1e15  # larger than any SI number in a recording
 MOST_MEMBERS = 1000  # of a group
@@ -30,14 +28,20 @@ LONGEST_TEXT = 2**25  # characters: a preset with 100 000 listed grains has some
 SAME_SIZE = (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)  # filters that do not compress
 
 
-def check_recording(file: h5py.File) -> None:
-    """Raise Unusable if an HDF5 file refers to other files, or declares more data than its size allows."""
+def check_recording(file: h5py.File, groups: Collection[str], deeper: Collection[str]) -> dict[str, h5py.Dataset]:
+    """The data sets in some groups of an HDF5 file, and in groups `deeper` in these, by path; no others may be read.
+
+    Raises Unusable if they refer to other files, or declare more data than the file's size allows.
+    """
     for name in ATTRIBUTES:
         if name in file.attrs:
             _check_attribute(file, name)
-    total = sum(_checked_bytes(file, data) for data in _data_sets(file))
+    known = sorted(set(groups) & set(file))
+    found = {path: data for name in known for path, data in _data_sets(file, name, deeper)}
+    total = sum(_checked_bytes(file, data) for data in found.values())
     if total > os.stat(file.filename).st_size + UNWRITTEN:
         raise Unusable(f"{file.filename} declares {_size(total)}, far more than it holds: do not use this file.")
+    return found
 
 
 def format_of(file: h5py.File) -> str:
@@ -127,16 +131,15 @@ def _is_whole(archive: ZipFile, member: ZipInfo) -> bool:
         return not kind.hasobject and min(shape, default=0) >= 0 and _bytes(shape, kind) <= member.file_size
 
 
-def _data_sets(file: h5py.File) -> Iterator[h5py.Dataset]:
-    """All data sets that a recording may have. Raises Unusable for links and unexpected groups."""
-    for name in sorted(set(GROUPS) & set(file)):
-        for path, item in _members(file, name):
-            if path in DEEPER and isinstance(item, h5py.Group):
-                yield from (data for _, data in _members(file, path))
-            elif isinstance(item, h5py.Dataset):
-                yield item
-            else:
-                raise Unusable(f"{file.filename}: {path} is not a data set: do not use this file.")
+def _data_sets(file: h5py.File, name: str, deeper: Collection[str]) -> Iterator[tuple[str, h5py.Dataset]]:
+    """The data sets of a group with their paths. Raises Unusable for links and for groups that are not `deeper`."""
+    for path, item in _members(file, name):
+        if path in deeper and isinstance(item, h5py.Group):
+            yield from _data_sets(file, path, ())
+        elif isinstance(item, h5py.Dataset):
+            yield path, item
+        else:
+            raise Unusable(f"{file.filename}: {path} is not a data set: do not use this file.")
 
 
 def _members(file: h5py.File, name: str) -> Iterator[tuple[str, h5py.Group | h5py.Dataset]]:

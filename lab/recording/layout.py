@@ -11,6 +11,7 @@ import numpy as np
 from lab.base.trust import attribute_words
 from lab.preset.schema import MATTERS, Preset
 from lab.preset.sections.water.liquid import parted
+from lab.recording.outlines import GROUP as SHAPES
 from solvers.fluid import quantities as water
 from solvers.fluid.phases import quantities as air
 from solvers.grains import quantities as grains
@@ -44,6 +45,9 @@ FLUSHED_ROWS = "rows"  # its attribute with the number of rows of the table at t
 COLUMNS = "columns"  # its attribute with the names of the data sets, in the order of the checksums in a row
 
 OF_MATTERS = {"grains": grains, "water": water, "air": air}  # what each matter is recorded by
+TABLES = "series", "frames", "steering"
+PARTS = "tank/parts"
+GROUPS = ("preset", *OF_MATTERS, "tank", SHAPES, *TABLES, CHECKS)  # all that is read of a file, and checked before
 
 CHUNK_BYTES = 2**19  # approximate size of a chunk
 CHUNK_ROWS = 1024

@@ -13,9 +13,21 @@ from lab.base.trust import BEYOND, attributes, check_recording, format_of, text
 from lab.preset.recorded import from_table
 from lab.recording import older
 from lab.recording.checks import Checks
-from lab.recording.layout import CHECKS, FILE_NAME, FORMAT, described, rows_of, sizes_of, tables_of
+from lab.recording.layout import (
+    CHECKS,
+    FILE_NAME,
+    FORMAT,
+    GROUPS,
+    PARTS,
+    TABLES,
+    described,
+    rows_of,
+    sizes_of,
+    tables_of,
+)
 from lab.recording.opening import open_to_read
-from lab.recording.outlines import GROUP, TABLES, read_outlines
+from lab.recording.outlines import GROUP, read_outlines
+from lab.recording.outlines import TABLES as OF_SHAPES
 from lab.recording.tables import Frames, Series, reading
 from solvers.machine.quantity import Quantity
 
@@ -32,7 +44,7 @@ SIZES = {
     "level": 13,
     "edge": 17,
 }  # arbitrary but distinct sizes, to compare shapes
-TABLE_KINDS = {"series": Series, "frames": Frames, "steering": Series}
+TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 
 
 class Recording:
@@ -61,7 +73,7 @@ class Recording:
         self._file, self.form = _open(self.path)
         with ExitStack() as otherwise, reading(self.path):
             otherwise.callback(self._file.close)
-            check_recording(self._file)
+            self._checked = check_recording(self._file, GROUPS, (PARTS,))
             stored = attributes(self._file)
             self.name, self.status, self.created = (str(stored[name]) for name in ("preset", "status", "created"))
             self.versions = json.loads(stored["versions"])
@@ -74,9 +86,11 @@ class Recording:
             self.volume, self.air_volume = self._volumes("water"), self._volumes("air")
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
-            self.parts = {name: self._stored(f"tank/parts/{name}") for name in self._file["tank/parts"]}
+            self.parts = {name: self._stored(f"{PARTS}/{name}") for name in self._file[PARTS]}
             shaped = GROUP in self._file
-            self.shapes = read_outlines({name: self._stored(f"{GROUP}/{name}") for name in TABLES}) if shaped else None
+            self.shapes = (
+                read_outlines({name: self._stored(f"{GROUP}/{name}") for name in OF_SHAPES}) if shaped else None
+            )
             self._check_contents()
             tables = self._tables()
             self.series, self.frames = tables["series"], tables["frames"]
@@ -87,9 +101,10 @@ class Recording:
 
     def _stored(self, name: str, read=lambda data: data[()]) -> object:
         """The content of a data set that does not grow. Raises Unusable if it is damaged."""
-        data = self._file[name]
+        if name not in self._checked:
+            raise ValueError(f"{name} is missing")
         try:
-            return read(data)
+            return read(self._checked[name])
         except (OSError, RuntimeError, ValueError) as error:
             raise Unusable(
                 f"{self.path}: {name} is damaged, and without it the recording cannot be used: record the run again."

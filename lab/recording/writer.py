@@ -24,6 +24,7 @@ from lab.recording.layout import (
     FILE_NAME,
     FLUSHED_ROWS,
     FORMAT,
+    PARTS,
     create_tables,
     fixed_text,
     row_bytes,
@@ -93,8 +94,7 @@ def new_recording(
         if path.exists():
             raise FileExistsError(path)
         with create(_unfinished(path)) as file:
-            tables_bytes = sum(table.nbytes for table in tables.values())
-            _reserve(file, radius.nbytes + tables_bytes + len(given) + SPARE_BYTES)
+            _reserve(file, radius.nbytes + sum(table.nbytes for table in tables.values()) + len(given) + SPARE_BYTES)
             file.attrs.update(attributes)
             store(file, "preset/given", fixed_text(given)[None])
             store(file, "preset/resolved", fixed_text(json.dumps(to_table(resolved)))[None])
@@ -108,9 +108,9 @@ def new_recording(
             store(file, "tank/outline", np.asarray(outline, dtype=float))
             store(file, "tank/fixed", np.asarray(fixed, dtype=float).reshape(-1, 3))
             store(file, "tank/open_edges", np.asarray(open_edges, dtype=int))
-            file.create_group("tank/parts", track_order=True)
+            file.create_group(PARTS, track_order=True)
             for name, line in parts.items():
-                store(file, f"tank/parts/{name}", np.asarray(line, dtype=float))
+                store(file, f"{PARTS}/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
             create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts), air))

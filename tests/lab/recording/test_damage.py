@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from lab.base.errors import LabError
-from lab.base.trust import GROUPS
 from lab.paint.video import render_recording
 from lab.recording import Recorder, layout, open_recording
 from lab.recording.checks import Checks
+from lab.recording.layout import GROUPS
 from tests.lab.preset.test_malformed import call, refused
 from tests.oracles.synthetic import frame, recorder, sample
 from tests.oracles.tampering import flipped, used

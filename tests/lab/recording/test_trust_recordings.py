@@ -2,6 +2,8 @@
 
 import json
 import resource
+import shutil
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from zipfile import ZipFile
@@ -13,10 +15,13 @@ import pytest
 from lab.base.errors import LabError
 from lab.base.trust import check_state
 from lab.preset.find import load
-from lab.recording import Recorder, open_recording
+from lab.recording import Outlines, Recorder, new_recording, open_recording
+from lab.recording.layout import GROUPS
 from lab.runs.batch import prepare
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
+from solvers.grains.shapes.contour import Contour
 from tests.lab.preset.test_malformed import SMALL, call, copied, refused
+from tests.oracles.recorded_water import DROPS, POOL, pool
 from tests.oracles.synthetic import frame, sample
 
 
@@ -215,6 +220,51 @@ def test_a_manipulated_recording_is_refused(sound, tmp_path, name, little_memory
     with h5py.File(folder / "recording.h5", "r+") as file:
         MISCHIEF[name](file)
     assert "recording.h5" in refused(call("render", folder))
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> Path:
+    """The folder of a recording with all groups that the lab writes: of each matter, of parts, shapes and steering."""
+    wet = {"water": {"depth": "0.1 m"}, "air": {}}
+    preset, folder = pool(**wet), tmp_path_factory.mktemp("whole") / "run"
+    volume, contour = np.full((1, DROPS), 4e-4), Contour(1.0, np.array([0.1, 0.05]), np.zeros(2))
+    new_recording(
+        folder,
+        preset="all",
+        given=POOL,
+        resolved=preset,
+        radius=np.full((1, 3), 1e-3),
+        volume=volume,
+        air=volume,
+        parts={"gate": np.array([(0.0, 0.0), (0.0, 0.2)])},
+        shapes=Outlines((contour,), np.zeros(1), np.zeros((1, 3))),
+        outline=np.array([(-0.5, 0.0), (0.5, 0.0), (0.5, 0.5), (-0.5, 0.5)]),
+        step=1e-4,
+        steered=True,
+    )
+    return folder
+
+
+def data_sets(folder: Path) -> list[str]:
+    found = []
+    with h5py.File(folder / "recording.h5", "r") as file:
+        file.visititems(lambda name, item: found.append(name) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def test_all_that_the_lab_writes_is_checked_before_it_is_read(whole, tmp_path):
+    """Each data set of each group as a link to another file, and as one of a size that its file cannot have."""
+    paths = data_sets(whole)
+    assert {path.partition("/")[0] for path in paths} == set(GROUPS)
+    for path in paths:
+        vastly = [vast(path)] * (not path.startswith("preset/"))  # these are one text
+        for change in (partial(link_elsewhere_any, name=path), *vastly):
+            folder = copied(whole, tmp_path / "run")
+            with h5py.File(folder / "recording.h5", "r+") as file:
+                change(file)
+            with pytest.raises(LabError, match=r"is a link, possibly to another file|declares .* GB, far more"):
+                open_recording(folder)
+            shutil.rmtree(folder)
 
 
 def test_nothing_of_another_file_is_copied(sound, tmp_path):
