@@ -23,20 +23,21 @@ def swings(one: Outcome) -> list[tuple[float, float]]:
     every = max(1, round(EVERY / (time[1] - time[0])))
     free = time > settled
     roll = series["pose"][free, 0, ROLL][::every]
-    return decaying(roll - roll[-len(roll) // 4 :].mean(), every * float(time[1] - time[0]), SWINGS)
+    return decaying(roll, every * float(time[1] - time[0]), SWINGS)
 
 
 def decaying(record: np.ndarray, step: float, count: int) -> list[tuple[float, float]]:
     """Frequencies (rad/s) and damping ratios of so many decaying swings that a record at equal steps (s) is made of.
 
-    By the matrix pencil (Hua & Sarkar 1990, IEEE Trans. Acoust. Speech Signal Process. 38, 814): of the matrix of the
-    record's pieces, each a step later than the one before, the 2 `count` strongest directions are kept; what takes
-    them a step on has the eigenvalues exp((−ζ ω ± i ω_d) Δt). Unlike a spectrum's peak it tells swings apart that
-    have died away within two periods, and their damping.
+    They swing about a place of rest that need not be zero, nor the mean of any part of the record. By the matrix pencil
+    (Hua & Sarkar 1990, IEEE Trans. Acoust. Speech Signal Process. 38, 814): of the matrix of the record's pieces, each
+    a step later than the one before, the 2 `count` + 1 strongest directions are kept; what takes them a step on has
+    the eigenvalues exp((−ζ ω ± i ω_d) Δt), and 1 for the place of rest. Unlike a spectrum's peak it tells swings apart
+    that have died away within two periods, and their damping.
     """
     length = len(record) // 2
     pieces = np.array([record[k : k + length + 1] for k in range(len(record) - length)])
-    strongest = np.linalg.svd(pieces, full_matrices=False)[2][: 2 * count].T
+    strongest = np.linalg.svd(pieces, full_matrices=False)[2][: 2 * count + 1].T
     forward = np.linalg.eigvals(np.linalg.pinv(strongest[:-1]) @ strongest[1:])
     rates = np.log(forward.astype(complex)) / step
     return sorted((float(one.imag), float(-one.real / abs(one))) for one in rates if one.imag > 0.0)
