@@ -10,17 +10,20 @@ from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds, centre_of_flow, liquid
 from lab.preset.sections.water.tanks import Pool, pools
 from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
+from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.flow import compressed, stirred, torsion, vortex_pressure, vortices
 from solvers.fluid.start.packing import below
-from solvers.fluid.start.parts import clear_of, free_share, surfaces
+from solvers.fluid.start.parts import clear_of, free_share
 from solvers.fluid.start.plates import is_slanted
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
+from solvers.fluid.start.support import depths
 from solvers.fluid.timestep import steps_of_water
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.tank.outline import moments
 from solvers.tank.parts import Part
+from solvers.tank.tank import Tank
 
 VELOCITY = [VELOCITY_Y, VELOCITY_Z]
 
@@ -45,14 +48,14 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     try:
         gravity = preset.run.gravity if borne else 0.0
         drops = at_rest(pool.polygon, pool.level, water, gravity, beside, np.array(preset.tank.corners))
+        if preset.water.flow:
+            _set_going(preset, drops)
+        elif preset.water.region is not None:
+            _let_go(preset, drops, parts)
         if water.air:
             return with_air(drops, _air_of(preset, water))
     except ValueError as error:
         raise LabError(f"water.spacing: {error}; take smaller particles.") from None
-    if preset.water.flow:
-        _set_going(preset, drops)
-    if parts and preset.water.region is not None:
-        _under_surfaces(preset, drops)
     return _cut_off(preset, drops, parts) if parts and not beside else drops
 
 
@@ -78,11 +81,12 @@ def _air_of(preset: Preset, water: Water) -> np.ndarray:
     return air_round(tank, polygon, water, preset.run.gravity)
 
 
-def _under_surfaces(preset: Preset, drops: np.ndarray) -> None:
-    """Give each of the particles (n, 6) of a region the density under the surface right above it."""
-    water, (polygon, level) = liquid(preset), bounds(preset)
-    depth = surfaces(drops[:, [Y, Z]], polygon, level) - drops[:, Z]
-    drops[:, EXCESS] = hydrostatic_excess(depth, preset.run.gravity, water.sound_speed, water.state)
+def _let_go(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> None:
+    """Give each of the particles (n, 6) of a region the density of its depth, none where it stands on nothing."""
+    water, (polygon, level), place = liquid(preset), bounds(preset), drops[:, [Y, Z]]
+    tank = Tank(np.array(preset.tank.corners), preset.thickness, preset.tank.open_edges)
+    depth, weight = depths(place, polygon, level, tank, parts, water.spacing), Reduced.weight(water, preset.run.gravity)
+    drops[:, EXCESS] = hydrostatic_excess(depth, weight, water.sound_speed, water.state)
 
 
 def _cut_off(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> np.ndarray:

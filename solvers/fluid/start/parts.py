@@ -33,13 +33,3 @@ def free_share(polygon: np.ndarray, level: float, parts: Sequence[Part], spacing
 def clear_of(points: np.ndarray, parts: Sequence[Part], spacing: float) -> np.ndarray:
     """Which places (n, 2) m of particles bodies and plates leave free."""
     return cleared(points, parts, (CLOSE - NEAR) * spacing)
-
-
-def surfaces(points: np.ndarray, polygon: np.ndarray, level: float) -> np.ndarray:
-    """Height (n,) m of the water's surface over each point (n, 2) m: the level edge of the polygon next above it."""
-    found = np.full(len(points), level)
-    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        if a[1] == b[1]:
-            over = (points[:, 0] >= min(a[0], b[0])) & (points[:, 0] <= max(a[0], b[0])) & (points[:, 1] < a[1])
-            found = np.where(over, np.minimum(found, a[1]), found)
-    return found

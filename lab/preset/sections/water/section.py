@@ -26,9 +26,9 @@ class Water:
     """Water in the plane as particles: weakly compressible, δ-SPH.
 
     It stands level up to its `depth`, or fills a `region`, such as a column that collapses, or is a round drop of a
-    `radius`; at rest, unless there is a `flow`. The spacing is rounded so that a whole number of particles makes up the
-    depth, or the height of the region. The models that are not given are those of the `scheme`, see
-    `lab.preset.sections.water.schemes`.
+    `radius`; at rest, unless there is a `flow`. What of a region stands on nothing begins without pressure. The spacing
+    is rounded so that a whole number of particles makes up the depth, or the height of the region. The models that are
+    not given are those of the `scheme`, see `lab.preset.sections.water.schemes`.
     """
 
     depth: Annotated[
