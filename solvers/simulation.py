@@ -25,7 +25,7 @@ from solvers.tank.walls import Walls
 from solvers.time import watch
 from solvers.time.changes import up_to_change
 from solvers.time.clock import Clock
-from solvers.time.schedules import SCHEDULES, choose_schedule, moved, units_a_world
+from solvers.time.schedules import SCHEDULES, check_cut, choose_schedule, moved, units_a_world
 from solvers.time.sequence import Sequence
 from solvers.time.settling import settle
 
@@ -314,10 +314,11 @@ class Simulation:
         return own | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Restore what `state` returned in a simulation of the same scene, on whatever processor."""
+        """Restore what `state` returned of the same scene, on whatever processor. Raises ValueError for any other."""
         self.steps, room, self.unkicked, self.observed, *cut = (int(number) for number in state["numbers"])
         units, schedule, vectors, among = (*cut, self.vectors, self.among)[:4]  # older states lack the last
         vectors = wide.told_of_outlines(vectors) if self.scene.shapes else vectors
+        check_cut(units, schedule, vectors, moved(self.scene))
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
         if (room, units, vectors, among) != (self.room, self.units_a_world, self.vectors, self.among):
             self.arrays.release()

@@ -3,6 +3,7 @@
 import re
 
 MARKUP = {"\\": "\\\\", "`": "\\`", "[": "\\[", "|": "\\|", "*": "\\*", "<": "&lt;", ">": "&gt;", "&": "&amp;"}
+LONGEST_HEADING = 300  # letters
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # characters that begin a formula in a spreadsheet
 
 
@@ -14,6 +15,12 @@ def printable(text: str) -> str:
 def one_line(text: object) -> str:
     """A text on one line."""
     return printable(" ".join(str(text).split()))
+
+
+def heading(text: object) -> str:
+    """A text on one line to draw above a picture, cut where it is longer than any title."""
+    line = one_line(text)
+    return line if len(line) <= LONGEST_HEADING else f"{line[:LONGEST_HEADING]}…"
 
 
 def inline(text: object) -> str:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import out_option, quiet_option, set_option
+from lab.cli.options import FilePath, out_option, quiet_option, set_option, tell
 
 
 @click.command()
@@ -24,11 +24,11 @@ def stability(preset: str, overrides: dict, out: Path | None, quiet: bool) -> No
 
     text, folder = judge(load(preset, overrides), out)
     if not quiet:
-        click.echo(text)
+        tell(text)
     click.echo(folder)
 
 
-TABLE = click.Path(path_type=Path, dir_okay=False)
+TABLE = FilePath(path_type=Path, dir_okay=False)
 
 
 @click.command()
@@ -88,12 +88,12 @@ def hull(file: Path, out: Path | None, **asked) -> None:
     from lab.report.hull import Asked, examine
 
     folder = out or Path("renders/hull") / file.stem
-    click.echo(examine(file, folder, Asked(**asked)))
+    tell(examine(file, folder, Asked(**asked)))
     click.echo(folder)
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@click.argument("file", type=FilePath(path_type=Path, dir_okay=False))
 @click.option("--length", type=float, required=True, help="Between perpendiculars, m.")
 @click.option("--breadth", type=float, required=True, help="Moulded, m.")
 @click.option("--draught", type=float, required=True, help="Even, m.")
@@ -111,7 +111,7 @@ def lewis(file: Path, **particulars: float | None) -> None:
     """
     from lab.naval.lewis import write_lewis
 
-    click.echo(write_lewis(file, particulars))
+    tell(write_lewis(file, particulars))
 
 
 @click.command()
@@ -131,12 +131,12 @@ def hydrodynamics(preset: str, overrides: dict, out: Path | None) -> None:
     from lab.studies.hydrodynamics import compare
 
     text, folder = compare(load(preset, overrides), out)
-    click.echo(text)
+    tell(text)
     click.echo(folder)
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("folder", type=FilePath(path_type=Path))
 @click.option("--pdf", is_flag=True, help="Write it as PDF, too; needs WeasyPrint (the extra `pdf`).")
 def report(folder: Path, pdf: bool) -> None:
     """Write one self-contained page on the run in FOLDER for the file: report.html, to be printed on A4.

@@ -5,7 +5,23 @@ from pathlib import Path
 import click
 
 from lab.base.errors import LabError
+from lab.base.text import printable
 from lab.preset.units import quoted
+
+
+class FilePath(click.Path):
+    """A path on a command line, as `click.Path`; an empty one, which would be the current folder, is refused."""
+
+    def convert(self, value: object, param: click.Parameter | None, context: click.Context | None) -> object:
+        """The path. Fails for an empty one, as of a variable of the shell that is not set."""
+        if value == "":
+            self.fail("the name is empty; write . for the current folder.", param, context)
+        return super().convert(value, param, context)
+
+
+def tell(text: str, err: bool = False) -> None:
+    """Print a text, which may hold words of users and files: control codes, which a terminal would obey, become ?."""
+    click.echo(printable(text), err=err)
 
 
 def texts_by_key(texts: tuple[str, ...]) -> dict[str, str]:
@@ -38,7 +54,7 @@ def out_option(about: str, shown: str = "", default: Path | None = None):
     """The option --out for a folder; `about`: its content; `shown`: a default that depends on the preset, as a text."""
     return click.option(
         "--out",
-        type=click.Path(path_type=Path, file_okay=False),
+        type=FilePath(path_type=Path, file_okay=False),
         metavar="DIR",
         default=default,
         show_default=default is not None,
@@ -86,5 +102,5 @@ fast_option = click.option("--fast", is_flag=True, help="Only the parts that tak
 def show(result, quiet: bool) -> None:
     """Print the summary, unless `quiet`, and where the results are."""
     if not quiet:
-        click.echo(result.summary_text)
+        tell(result.summary_text)
     click.echo(result.folder)

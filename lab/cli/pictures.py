@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from lab.base.errors import LabError
-from lab.cli.options import ColourOption, out_option, set_option
+from lab.cli.options import ColourOption, FilePath, out_option, set_option, tell
 from lab.preset.units import quoted
 
 
@@ -70,10 +70,10 @@ def style_options(command: Callable) -> Callable:
 
 
 @click.command()
-@click.argument("recordings", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.argument("recordings", type=FilePath(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=FilePath(path_type=Path),
     metavar="PLACE",
     help="An .mp4, .gif or .webp file, or with --png a folder; of several recordings a folder.  "
     "[default: beside each recording]",
@@ -146,14 +146,14 @@ def _render_many(found: list[Path], empty: dict[Path, str], out: Path | None, wi
         if job.path not in failed:
             click.echo(job.target)
     for sentence in failed.values():
-        click.echo(sentence, err=True)
+        tell(sentence, err=True)
     if failed:
         raise LabError(f"{len(failed)} of {len(jobs) + len(empty)} were not painted: see above.")
 
 
 @click.command()
-@click.argument("recording", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="A .png file.  [default: poster.png beside the recording]")
+@click.argument("recording", type=FilePath(path_type=Path))
+@click.option("--out", type=FilePath(path_type=Path), help="A .png file.  [default: poster.png beside the recording]")
 @click.option("--time", type=float, help="Time in s.  [default: the end]")
 @click.option("--event", is_flag=True, help="The moment at which most happens.")
 @click.option("--world", type=int, help="One of the repeats, from 0.  [default: side by side]")
@@ -174,8 +174,8 @@ def poster(recording: Path, out: Path | None, event: bool, **wishes: object) -> 
 
 
 @click.command()
-@click.argument("recording", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="A .png file.  [default: sheet.png beside the recording]")
+@click.argument("recording", type=FilePath(path_type=Path))
+@click.option("--out", type=FilePath(path_type=Path), help="A .png file.  [default: sheet.png beside the recording]")
 @click.option("--world", type=int, help="One of the repeats, from 0.")
 @style_options
 def sheet(recording: Path, out: Path | None, **wishes: object) -> None:
@@ -191,9 +191,9 @@ def sheet(recording: Path, out: Path | None, **wishes: object) -> None:
 
 
 @click.command()
-@click.argument("recordings", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.argument("recordings", type=FilePath(path_type=Path), nargs=-1, required=True)
 @click.option(
-    "--out", type=click.Path(path_type=Path), required=True, help="An .mp4, .gif or .webp file, or .png: the end alone."
+    "--out", type=FilePath(path_type=Path), required=True, help="An .mp4, .gif or .webp file, or .png: the end alone."
 )
 @click.option("--caption", multiple=True, help="A name for each recording, in turn.  [default: those of the folders]")
 @click.option("--title", help="Title of the picture.  [default: that of the first recording]")

@@ -4,12 +4,14 @@ from pathlib import Path
 
 import click
 
+from lab.cli.options import FilePath
+
 
 @click.command()
 @click.option("--reference", "page", is_flag=True, help="The reference of all keys as a page in Markdown instead.")
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=FilePath(path_type=Path, dir_okay=False),
     metavar="FILE",
     help="Write it to a file.  [default: print it]",
 )
@@ -20,6 +22,7 @@ def schema(page: bool, out: Path | None) -> None:
     cargolab schema --out preset.schema.json   and, as the first line of a preset beside it:
     #:schema ./preset.schema.json
     """
+    from lab.base.files import write_text
     from lab.preset.editor import text_of_schema
     from lab.preset.reference import reference
 
@@ -27,5 +30,5 @@ def schema(page: bool, out: Path | None) -> None:
     if out is None:
         click.echo(text, nl=False)
         return
-    out.write_text(text, encoding="utf-8")
+    write_text(out, text)
     click.echo(out if page else f"{out}; a preset beside it names it in its first line: #:schema ./{out.name}")

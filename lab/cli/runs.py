@@ -8,6 +8,7 @@ import click
 from lab.base.costs import importing
 from lab.base.errors import LabError
 from lab.cli.options import (
+    FilePath,
     arch_option,
     out_option,
     quiet_option,
@@ -15,6 +16,7 @@ from lab.cli.options import (
     set_option,
     short_overrides,
     show,
+    tell,
     video_option,
 )
 
@@ -24,7 +26,7 @@ from lab.cli.options import (
 @set_option
 @click.option(
     "--replay",
-    type=click.Path(path_type=Path),
+    type=FilePath(path_type=Path),
     metavar="DIR",
     help="Instead of a preset: a recording of `cargolab view`, repeated bit for bit.",
 )
@@ -76,7 +78,7 @@ def run(
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("folder", type=FilePath(path_type=Path))
 @video_option
 @quiet_option
 def resume(folder: Path, no_video: bool, quiet: bool) -> None:
@@ -104,4 +106,4 @@ def explain(preset: str, overrides: dict) -> None:
     from lab.preset.find import load
     from lab.report.explain import explain as explained
 
-    click.echo(explained(load(preset, overrides)))
+    tell(explained(load(preset, overrides)))

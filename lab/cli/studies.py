@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import cluster_option, fast_option, out_option, page_only_option, page_option, quiet_option
+from lab.cli.options import cluster_option, fast_option, out_option, page_only_option, page_option, quiet_option, tell
 from lab.preset.accuracy import LEVELS
 
 
@@ -22,7 +22,7 @@ def list_presets() -> None:
     }
     width = max(map(len, shown), default=0)
     for name, title in shown.items():
-        click.echo(f"{name:<{width}}  {title}")
+        tell(f"{name:<{width}}  {title}")
     click.echo(f"\n[{QUICK}]: also available under that longer name, cheaper and less accurate", err=True)
 
 

@@ -13,6 +13,7 @@ from lab.cli.options import (
     set_option,
     short_overrides,
     show,
+    tell,
     texts_by_key,
     video_option,
 )
@@ -92,4 +93,4 @@ def calibrate(
     from lab.sweeps.calibrate import calibrate as calibrated
 
     overrides |= short_overrides(repeats, arch)
-    click.echo(calibrated(preset, target, vary, overrides, out, quiet=quiet, cluster=cluster).text())
+    tell(calibrated(preset, target, vary, overrides, out, quiet=quiet, cluster=cluster).text())

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from lab.assembly.offsets import rows_of, text_of
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.lewis_hull import Particulars, lewis_hull
 from solvers.ship.water import Water
@@ -25,7 +26,7 @@ def write_lewis(path: Path, particulars: Mapping[str, float | None]) -> str:
     except Unavailable as error:
         raise LabError(f"{path.name}: {error}") from None
     try:
-        path.write_text(text_of(list(rows_of(form))), encoding="utf-8")
+        write_text(path, text_of(list(rows_of(form))))
     except OSError as error:
         raise LabError(f"{path} cannot be written ({error.strerror}): choose another place.") from error
     one = form.hydrostatics(particulars["draught"], SALT)

@@ -2,12 +2,17 @@
 
 import csv
 from collections.abc import Sequence
+from io import StringIO
+from itertools import islice
 from math import isfinite
 from pathlib import Path
 
 from lab.base.errors import LabError
+from lab.base.files import read_bytes
 
+LARGEST_FILE = 8_000_000  # bytes
 MOST = 10_000  # rows
+LONGEST = 200  # letters of a name or a number; errors quote them whole
 
 
 def read_rows(path: Path, needed: Sequence[str], perhaps: Sequence[str], what: str) -> list[dict[str, str]]:
@@ -16,12 +21,22 @@ def read_rows(path: Path, needed: Sequence[str], perhaps: Sequence[str], what: s
     `what` names the table in the error; columns that may be left out are "" there.
     """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.DictReader(file))
-    except (OSError, UnicodeDecodeError, csv.Error):
+        content = read_bytes(path, LARGEST_FILE + 1)
+        if content is None or len(content) > LARGEST_FILE:
+            raise LabError(f"{path} is no table, or one of over {LARGEST_FILE // 1_000_000} MB; look at its name.")
+        if b"\0" in content:
+            raise LabError(f"{path} is no text but binary data; look at its name.")
+        table = csv.DictReader(StringIO(content.decode("utf-8-sig"), newline=""))
+        rows = list(islice(table, MOST + 1))
+    except (OSError, ValueError, csv.Error):
         raise LabError(f"{path} cannot be read as a CSV file; look at its name.") from None
+    if len(rows) > MOST:
+        raise LabError(f"{path.name}: {what} has at most {MOST} rows; is it one?")
+    texts = [text for row in rows for text in row.values() if isinstance(text, str)]
+    if max(map(len, texts), default=0) > LONGEST:
+        raise LabError(f"{path.name}: {what} has a text of more than {LONGEST} letters; is it one?")
     missing = [name for name in needed if not rows or name not in rows[0]]
-    if missing or len(rows) > MOST:
+    if missing:
         more = f" and perhaps {', '.join(perhaps)}" if perhaps else ""
         raise LabError(f"{path.name}: {what} has the columns {', '.join(needed)}{more}.")
     return [{key: (row.get(key) or "").strip() for key in (*needed, *perhaps)} for row in rows]

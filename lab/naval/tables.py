@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from lab.naval.condition import Condition
 from lab.naval.sheet import Judged, Row, arms, shown
 from solvers.ship.naval.form import Form
@@ -120,7 +121,7 @@ def write(tables: dict[str, Table], folder: Path) -> dict[str, Path]:
         written[name] = folder / f"{name}.csv"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            written[name].write_text(text(table), encoding="utf-8")
+            write_text(written[name], text(table))
         except OSError as error:
             raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
     return written

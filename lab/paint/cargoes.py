@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
+from lab.base.files import replacing
 from lab.paint import decorations as deco
 from lab.paint import palette
 from lab.paint.cargo.looks import UNKNOWN, Stowage, looks
@@ -33,7 +34,8 @@ def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
             footage.cargo = Stowage(name if name in looks() else UNKNOWN)
             cell = _cell(name, Bed(footage, 0, name))
         image.paste(cell, (EDGE + k % COLUMNS * (CELL[0] + EDGE), EDGE + k // COLUMNS * (CELL[1] + EDGE)))
-    image.quantize(256).save(out, optimize=True)  # a third of the bytes
+    with replacing(out) as part:
+        image.quantize(256).save(part, optimize=True)  # a third of the bytes
     return out
 
 

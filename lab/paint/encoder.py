@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.base.files import replacing
 
 BT709 = "scale=out_color_matrix=bt709:out_range=tv"
 ENCODING = (
@@ -31,23 +32,21 @@ def write_video(out: Path, pictures: Iterable[np.ndarray], rate: float, comment:
     """
     if out.suffix != ".mp4":
         raise LabError(f"{out} cannot be written: a video is an .mp4 file.")
-    part, process = unfinished(out), None
-    part.unlink(missing_ok=True)  # the encoder of a killed process may still have it open
-    try:
-        for picture in pictures:
-            if process is None:
-                process = _begin(part, picture.shape, rate, comment)
+    process = None
+    with replacing(out) as part:  # the encoder of a killed process may still have the unfinished one open
+        try:
+            for picture in pictures:
+                if process is None:
+                    process = _begin(part, picture.shape, rate, comment)
+                with _encoding(process, out):
+                    process.stdin.write(memoryview(np.ascontiguousarray(picture)))
             with _encoding(process, out):
-                process.stdin.write(memoryview(np.ascontiguousarray(picture)))
-        with _encoding(process, out):
-            process.stdin.close()
-            if process.wait():
-                raise BrokenPipeError
-        part.replace(out)
-    finally:
-        if process:
-            _be_done_with(process)
-        part.unlink(missing_ok=True)
+                process.stdin.close()
+                if process.wait():
+                    raise BrokenPipeError
+        finally:
+            if process:
+                _be_done_with(process)
     return out
 
 
@@ -56,22 +55,15 @@ def join_videos(pieces: Sequence[Path], out: Path, comment: str = "") -> Path:
 
     Raises LabError if `out` cannot be written.
     """
-    part, said = unfinished(out), pieces[0].with_suffix(".txt")
+    said = pieces[0].with_suffix(".txt")
     said.write_text("".join(f"file '{piece.name}'\n" for piece in pieces), encoding="utf-8")
     joined = ("-f", "concat", "-safe", "0", "-i", f"file:{said.absolute()}", "-c", "copy", "-movflags", "+faststart")
-    told = ("-metadata", f"comment={comment}", f"file:{part.absolute()}")
-    try:
+    with replacing(out) as part:
+        told = ("-metadata", f"comment={comment}", f"file:{part.absolute()}")
         made = subprocess.run([_ffmpeg(), "-y", "-v", "error", *joined, *told], capture_output=True, text=True)
         if made.returncode:
             raise LabError(f"{out} cannot be written: {made.stderr.strip().splitlines()[-1:]}; make room there.")
-        return part.replace(out)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def unfinished(out: Path) -> Path:
-    """The name of a video until it is complete."""
-    return out.with_suffix(".part.mp4")
+    return out
 
 
 def _ffmpeg() -> str:

@@ -13,6 +13,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from lab import __version__
 from lab.base.errors import LabError
+from lab.base.files import replacing
 from lab.paint.decorations import number
 from lab.paint.encoder import says, write_video
 from lab.paint.film import Film, choose_beds, choose_look
@@ -139,7 +140,7 @@ def render_grid(
         film = Film(shown, look, title, MOST_IN_GRID)
         out = _made(Path(out))
         if out.suffix == ".png":
-            Image.fromarray(film.picture(len(film.time) - 1)).save(out)
+            _save(film.picture(len(film.time) - 1), out)
             return out
         return _write(out, film, look.speed, False, progress)
 
@@ -182,7 +183,7 @@ def poster(
         out = _made(_target(path, out, "poster.png"))
         if out.suffix != ".png":
             raise LabError(f"{out} cannot be written: a poster is a .png file.")
-        Image.fromarray(Film(beds, look).picture(nearest)).save(out)
+        _save(Film(beds, look).picture(nearest), out)
         return out
 
 
@@ -210,7 +211,7 @@ def contact_sheet(
         times = telling_moments(bed, count)
         beds = [replace(bed, name=f"{number(time, 2)} s") for time in times]
         out = _made(_target(path, out, "sheet.png"))
-        Image.fromarray(Film(beds, look, most=count, moments=times).picture(0)).save(out)
+        _save(Film(beds, look, most=count, moments=times).picture(0), out)
         return out
 
 
@@ -273,6 +274,12 @@ def _made(out: Path) -> Path:
     return out
 
 
+def _save(picture: np.ndarray, out: Path) -> None:
+    """Write one picture, whole or not at all."""
+    with replacing(out) as part:
+        Image.fromarray(picture).save(part)
+
+
 def _write_folder(folder: Path, pictures: Iterator[np.ndarray], count: int, comment: str) -> Path:
     """Write `count` pictures into a folder; the last one keeps a comment, so it tells that all are there."""
     folder.mkdir(exist_ok=True)
@@ -282,7 +289,6 @@ def _write_folder(folder: Path, pictures: Iterator[np.ndarray], count: int, comm
     kept.add_text("Comment", comment)
     for k, picture in enumerate(pictures):
         image, last = Image.fromarray(picture), k == count - 1
-        part = folder / "picture.part"  # renamed when it is whole
-        image.save(part, "PNG", pnginfo=kept if last and comment else None)
-        part.replace(folder / f"picture_{k:05d}.png")
+        with replacing(folder / f"picture_{k:05d}.png") as part:
+            image.save(part, "PNG", pnginfo=kept if last and comment else None)
     return folder

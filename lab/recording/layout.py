@@ -49,6 +49,7 @@ TABLES = "series", "frames", "steering"
 PARTS = "tank/parts"
 GROUPS = ("preset", *OF_MATTERS, "tank", SHAPES, *TABLES, CHECKS)  # all that is read of a file, and checked before
 
+LONGEST_LABEL = 500  # letters
 CHUNK_BYTES = 2**19  # approximate size of a chunk
 CHUNK_ROWS = 1024
 ATTEMPTS, RETRY_DELAY = 100, 0.02  # attempts to open a file that another process has open, and the pause (s) between
@@ -143,6 +144,8 @@ def described(data: h5py.Dataset) -> Quantity:
     mean, plot = (bool(data.attrs[name]) for name in ("mean_over_sample", "plot"))
     never = float(data.attrs["never"]) if "never" in data.attrs else None
     per = next((per for per, names in OWNERS.items() if names == owners), None)
+    if max(map(len, (unit, label, *components)), default=0) > LONGEST_LABEL:
+        raise ValueError(f"{data.name[1:]} has a longer label than the lab writes")
     found = Quantity(data.name.rpartition("/")[2], unit, components, label, mean, per or "", never, plot)
     if per is None or axes != found.axes or len(found.units) != found.width:
         raise ValueError(f"{data.name[1:]} is not what the lab writes there")

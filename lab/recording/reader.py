@@ -145,7 +145,7 @@ class Recording:
         wet = "water" in self.preset.matters
         sound = {
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
-            "attribute versions": isinstance(self.versions, dict),
+            "attribute versions": _of_texts(self.versions),
             "attribute machine": isinstance(self.machine, dict),
             "preset/resolved": some == (self.preset.material is not None),
             "grains/radius": _finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
@@ -162,6 +162,11 @@ class Recording:
         for name, is_sound in sound.items():
             if not is_sound:
                 raise ValueError(f"{name} is not what the lab writes there")
+
+    @property
+    def version(self) -> str:
+        """The version of the lab that began it, "unknown" if the file does not say."""
+        return self.versions.get("cargo-shift-lab", "unknown")
 
     @property
     def quantities(self) -> dict[str, Quantity]:
@@ -221,6 +226,11 @@ def _finite(array: np.ndarray, axes: int, columns: int | None = None) -> bool:
     """Whether an array has finite numbers and this many axes, the last one with `columns` entries."""
     fits = array.ndim == axes and columns in (None, array.shape[-1]) and array.dtype.kind in "fiu"
     return bool(fits and (np.abs(array) < BEYOND).all())
+
+
+def _of_texts(table: object) -> bool:
+    """Whether something is a table of texts, or an empty one."""
+    return isinstance(table, dict) and all(isinstance(text, str) for text in table.values())
 
 
 def _wide(outline: np.ndarray) -> bool:

@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 
 from lab.base.errors import LabError, Unusable
+from lab.base.files import replacing
 from lab.base.trust import attribute_words, format_of
 from lab.preset.recorded import to_table
 from lab.preset.schema import Preset
@@ -93,7 +94,7 @@ def new_recording(
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.exists():
             raise FileExistsError(path)
-        with create(_unfinished(path)) as file:
+        with _new(path) as file:
             _reserve(file, radius.nbytes + sum(table.nbytes for table in tables.values()) + len(given) + SPARE_BYTES)
             file.attrs.update(attributes)
             store(file, "preset/given", fixed_text(given)[None])
@@ -114,7 +115,6 @@ def new_recording(
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
             create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts), air))
-        _publish(path)
     return path
 
 
@@ -315,16 +315,14 @@ def _status(text: str) -> np.ndarray:
     return np.array(text.encode()[:LONGEST_STATUS], h5py.string_dtype(length=LONGEST_STATUS))
 
 
-def _unfinished(path: Path) -> Path:
-    """The name of a file until it is complete."""
-    return path.with_name(f"{path.name}.new")
-
-
-def _publish(path: Path) -> None:
-    """Write the unfinished file to the disk and rename it atomically."""
-    with _unfinished(path).open("r+b") as file:
-        os.fsync(file.fileno())
-    _unfinished(path).replace(path)
+@contextmanager
+def _new(path: Path) -> Iterator[h5py.File]:
+    """A new file that gets its name once it is complete and on the disk."""
+    with replacing(path) as part:
+        with create(part) as file:
+            yield file
+        with part.open("r+b") as written:
+            os.fsync(written.fileno())
 
 
 def _reserve(file: h5py.File, size: int) -> None:

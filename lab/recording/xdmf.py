@@ -10,6 +10,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
 from lab.base.errors import LabError
+from lab.base.files import replacing
 from lab.recording import Recording
 
 KINDS = {1: "Scalar", 2: "Vector"}  # by the number of components
@@ -34,7 +35,7 @@ def write_xdmf(recording: Recording) -> Path:
     """Write recording.xdmf beside a recording, with a time series of points for each world. Raises LabError."""
     path = recording.path.with_suffix(".xdmf")
     try:
-        with path.open("w", encoding="utf-8") as file:
+        with replacing(path) as part, part.open("w", encoding="utf-8") as file:
             file.writelines(_lines(recording))
     except OSError as error:
         raise LabError(f"{path} cannot be written ({error.strerror}): make room there.") from error

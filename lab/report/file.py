@@ -13,6 +13,7 @@ from pathlib import Path
 import matplotlib
 
 from lab.base.errors import LabError
+from lab.base.files import replacing, write_text
 from lab.measures import measure_all
 from lab.naval import sheet
 from lab.preset.units import show
@@ -38,7 +39,7 @@ def write_report(folder: Path, pdf: bool = False) -> list[Path]:
         place = recording.path.parent
     written = [place / "report.html"]
     try:
-        written[0].write_text(text, encoding="utf-8")
+        write_text(written[0], text)
     except OSError as error:
         raise LabError(f"{place} cannot be written ({error.strerror}): make room there.") from error
     return [*written, _pdf(text, place / "report.pdf")] if pdf else written
@@ -53,7 +54,8 @@ def _pdf(text: str, path: Path) -> Path:
             "--pdf: needs WeasyPrint and the system's Pango: pip install 'cargo-shift-lab[pdf]'; or print report.html "
             "from a browser, which lays it out on A4."
         ) from error
-    HTML(string=text).write_pdf(path)
+    with replacing(path) as part:
+        HTML(string=text).write_pdf(part)
     return path
 
 
@@ -76,6 +78,7 @@ def _data(recording: Recording) -> dict[str, object]:
         "figures": [{"name": name, "data": data} for name, data in _pictures(recording, values)],
         "measures": [(name.replace("_", " "), number(value), value.note) for name, value in values.items()],
         "given": recording.given,
+        "version": recording.version,
         "versions": recording.versions,
         "machine": machine_of(recording),
         "recording": recording.path.name,

@@ -7,6 +7,7 @@ import numpy as np
 
 from lab.assembly.offsets import read_offsets, rows_of, text_of
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
@@ -89,7 +90,7 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
         raise LabError(f"{path.name}: {error}") from None
     tables.write(written, folder)
     if path.suffix.lower() in SURFACES:
-        (folder / "offsets.csv").write_text(text_of(list(rows_of(form))), encoding="utf-8")
+        write_text(folder / "offsets.csv", text_of(list(rows_of(form))))
     return "\n".join([*lines, "", SIGNS])
 
 

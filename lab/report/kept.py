@@ -10,6 +10,7 @@ from pathlib import Path
 
 from lab import __version__
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from lab.recording import versions
 
 
@@ -78,10 +79,8 @@ def read(path: Path) -> dict[str, dict]:
 def write(path: Path, results: Mapping[str, object]) -> None:
     """Write results, atomically; a number that JSON lacks becomes null."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
     text = json.dumps(plain(results), indent=1, ensure_ascii=False, allow_nan=False)
-    part.write_text(text + "\n", encoding="utf-8")
-    part.replace(path)
+    write_text(path, text + "\n")
 
 
 def plain(value: object) -> object:

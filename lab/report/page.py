@@ -14,7 +14,8 @@ import matplotlib
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from matplotlib.figure import Figure
 
-from lab.base.text import one_line
+from lab.base.files import replacing, write_text
+from lab.base.text import one_line, printable
 from lab.report.plots import STYLE
 
 # Of a program that did not run a page says so. What it wrote is for those who run it; the JSON beside the page has it.
@@ -53,7 +54,7 @@ def render(path: Path, template: str, **data: object) -> Path:
     """Write a page by one of the templates; returns its file. Raises jinja2's UndefinedError for data it lacks."""
     path.parent.mkdir(parents=True, exist_ok=True)
     text = _environment().get_template(template).render(data)
-    path.write_text(re.sub(r"\n{3,}", "\n\n", text).strip() + "\n", encoding="utf-8")
+    write_text(path, re.sub(r"\n{3,}", "\n\n", text).strip() + "\n")
     return path
 
 
@@ -70,8 +71,8 @@ def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 def save_figure(path: Path, figure: Figure) -> Path:
     """Save a figure in the style of the lab; returns its file."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with matplotlib.rc_context(STYLE):
-        figure.savefig(path, dpi=130)
+    with matplotlib.rc_context(STYLE), replacing(path) as part:
+        figure.savefig(part, dpi=130)
     return path
 
 
@@ -81,6 +82,7 @@ def _environment() -> Environment:
         loader=FileSystemLoader(TEMPLATES),
         autoescape=select_autoescape(("html.j2",)),
         undefined=StrictUndefined,
+        finalize=_shown,
         trim_blocks=True,
         lstrip_blocks=True,
     )
@@ -88,6 +90,11 @@ def _environment() -> Environment:
     found.filters["paragraph"] = lambda text: STOPPED.sub(NOT_MEASURED, text)
     found.filters["line"] = lambda text: " ".join(str(text).split())
     return found
+
+
+def _shown(value: object) -> object:
+    """A value as a template writes it: in texts, which may be a stranger's, ? stands for what cannot be printed."""
+    return printable(value) if type(value) is str else value
 
 
 def _cell(value: object) -> str:

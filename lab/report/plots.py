@@ -16,6 +16,8 @@ from matplotlib.figure import Figure
 
 from lab import measures
 from lab.base.errors import LabError
+from lab.base.files import replacing
+from lab.base.text import heading
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, band
 from lab.measures.value import Value
 from lab.recording import Recording
@@ -54,6 +56,21 @@ def canvas(size: tuple[float, float], rows: int = 1, columns: int = 1, **how: ob
     return figure, figure.subplots(rows, columns, **how)
 
 
+def as_written(figure: Figure) -> None:
+    """Let titles, labels, legends and notes of a figure show a $ as it is; only tick labels, made here, are formulas.
+
+    The others may hold texts of users and of files, where a $ that begins no formula would be an error.
+    """
+    texts = [text for legend in figure.legends for text in legend.get_texts()] + figure.texts
+    texts += [figure._suptitle] if figure._suptitle else []
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        texts += [axes.title, axes._left_title, axes._right_title, axes.xaxis.label, axes.yaxis.label, *axes.texts]
+        texts += legend.get_texts() if legend else []
+    for text in texts:
+        text.set_parse_math(False)
+
+
 class Sheet:
     """One figure of a run, with the run's title; empty until panels are asked for."""
 
@@ -64,9 +81,8 @@ class Sheet:
         count = f"{recording.volume.shape[1]} particles of water" if recording.preset.water else count
         if recording.worlds > 1:
             count = f"{recording.worlds} beds of {count}; bands: ± std over beds, unless the legend says otherwise"
-        title = f"{textwrap.fill(recording.preset.title, TITLE)}\n{count}"
-        # The title is text that somebody wrote, and may hold a $.
-        self.figure.suptitle(title, x=0.02, ha="left", fontsize=9.5, parse_math=False)
+        title = f"{textwrap.fill(heading(recording.preset.title), TITLE)}\n{count}"
+        self.figure.suptitle(title, x=0.02, ha="left", fontsize=9.5)
 
     def panels(self, heights: tuple = (1,), widths: tuple = (1,), columns: int = 2) -> np.ndarray:
         """Axes by row and column; those of a column share x, those of a row share y. `columns`: of the legend."""
@@ -96,6 +112,7 @@ class Sheet:
                 handles.setdefault(label, handle)
         if handles:
             self.figure.legend(handles.values(), handles.keys(), loc=BELOW, ncols=self._columns)
+        as_written(self.figure)
         return self.figure
 
 
@@ -109,7 +126,8 @@ def write_plots(recording: Recording, values: Mapping[str, Value], folder: Path 
         for name, figure in figures(recording, values):
             written[name] = Path(folder) / f"{name}.png"
             try:
-                figure.savefig(written[name])
+                with replacing(written[name]) as part:
+                    figure.savefig(part)
             except OSError as error:
                 reason = error.strerror or error
                 raise LabError(f"{folder} cannot be written ({reason}): choose another folder.") from error

@@ -9,6 +9,7 @@ import numpy as np
 
 from lab.base.costs import in_words
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from lab.base.text import code, fenced, inline, one_line, paragraphs, printable
 from lab.measures.value import Value
 from lab.preset.fields import taken_of
@@ -95,8 +96,8 @@ def write_summary(
     data = json.dumps(data, indent=2, allow_nan=False)
     written = {"summary": folder / "summary.md", "summary_json": folder / "summary.json"}
     try:
-        written["summary"].write_text(page, encoding="utf-8")
-        written["summary_json"].write_text(data + "\n", encoding="utf-8")
+        write_text(written["summary"], page)
+        write_text(written["summary_json"], data + "\n")
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror}): make room there.") from error
     return written
@@ -196,7 +197,7 @@ def _data(
         "based_on": recording.preset.based_on,
         "status": recording.status,
         "created": recording.created,
-        "version": str(recording.versions.get("cargo-shift-lab", "")),
+        "version": recording.version,
         "measures": {name: value.as_json() for name, value in values.items()},
         "cost": {
             "wall_s": wall,

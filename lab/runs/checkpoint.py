@@ -8,13 +8,13 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from lab.base.errors import LabError, Unusable
+from lab.base.files import replacing, unfinished
 from lab.base.trust import check_archive, check_progress
 
 FORMAT = "cargo-shift-lab checkpoint 7"
@@ -38,18 +38,15 @@ class Checkpoint:
 
     def write(self, folder: Path) -> None:
         """Write the checkpoint; an earlier one is replaced only if that succeeds. Raises LabError."""
-        path, unfinished = folder / FILE_NAME, folder / f"{FILE_NAME}.new"
+        path = folder / FILE_NAME
         about = {"format": FORMAT, "runs": self.runs, "rows": self.rows}
         about |= {"warnings": self.warnings, "notes": self.notes, "digest": _digest(self.state)}
         try:
-            with unfinished.open("wb") as file:
+            with replacing(path) as part, part.open("wb") as file:
                 np.savez(file, about=np.array(json.dumps(about)), **{f"state/{k}": v for k, v in self.state.items()})
                 file.flush()
                 os.fsync(file.fileno())
-            unfinished.replace(path)
         except OSError as error:
-            with suppress(OSError):
-                unfinished.unlink(missing_ok=True)
             raise LabError(f"{path} cannot be written ({os.strerror(error.errno)}): make room there.") from error
 
 
@@ -89,5 +86,5 @@ def _digest(state: Mapping[str, np.ndarray]) -> str:
 
 def remove_checkpoint(folder: Path) -> None:
     """Remove the checkpoint and the unfinished one of a killed run, if there are any."""
-    (folder / FILE_NAME).unlink(missing_ok=True)
-    (folder / f"{FILE_NAME}.new").unlink(missing_ok=True)
+    for path in (folder / FILE_NAME, unfinished(folder / FILE_NAME)):
+        path.unlink(missing_ok=True)

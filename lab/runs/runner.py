@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from lab.base.errors import LabError, Unusable
+from lab.base.files import named
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.measures import measure_all
@@ -59,7 +60,7 @@ def run_preset(
     the recording so far is kept, with its summary and the checkpoint for `resume_run`.
     """
     loaded = load(name, overrides)
-    folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
+    folder = named(out) if out is not None else free_folder(RENDERS / loaded.name)
     with Progress(quiet) as progress, hint(folder), _second_process(video, beside) as beside:
         with progress.costs.of("settle"):
             run = prepare(loaded, folder)

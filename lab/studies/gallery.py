@@ -14,6 +14,7 @@ from pathlib import Path
 from PIL import Image
 
 from lab.base.errors import LabError
+from lab.base.files import replacing, write_text
 from lab.base.progress import Progress
 from lab.measures.value import read_values
 from lab.paint.cargoes import COLOURS, paint_cargoes
@@ -80,7 +81,7 @@ def _show(name: str, out: Path, beds: int, progress: Progress) -> None:
     lighten(card)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     told = json.dumps({**_telling(summary), **made, "asked": wanted}, indent=1)
-    path.write_text(told + "\n", encoding="utf-8")
+    write_text(path, told + "\n")
     render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, ceil(10.0 * lasts / LONGEST) / 10.0))
 
 
@@ -88,7 +89,8 @@ def lighten(picture: Path) -> None:
     """Leave 256 colours in a PNG file: half of the bytes."""
     with Image.open(picture) as image:
         lean = image.convert("RGB").quantize(COLOURS_LEFT)
-    lean.save(picture, optimize=True)
+    with replacing(picture) as part:
+        lean.save(part, optimize=True)
 
 
 def repeats_of_twin(name: str) -> int:
@@ -126,7 +128,7 @@ def _made(recording: Recording) -> dict[str, object]:
     return {
         "accuracy": recording.preset.run.accuracy,
         "beds": recording.worlds,
-        "version": recording.versions["cargo-shift-lab"],
+        "version": recording.version,
         "date": recording.created[:10],
     }
 

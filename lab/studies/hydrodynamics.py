@@ -7,6 +7,7 @@ import numpy as np
 
 from lab.assembly.ship import MEMORY_ORDER
 from lab.base.errors import LabError
+from lab.base.files import replacing, write_text
 from lab.naval.linear_water import by, linear_motion, peaks, table_in_calm
 from lab.naval.tables import write
 from lab.preset.find import LoadedPreset
@@ -68,7 +69,7 @@ def compare(loaded: LoadedPreset, out: Path | None) -> tuple[str, Path]:
     write({f"hydrodynamics-{kind}": _columns(table) for kind, table in tables.items()}, folder)
     write({"responses": _responses(omega, moves)}, folder)
     _draw(folder, loaded.name, preset, tables, (omega, moves))
-    (folder / "hydrodynamics.md").write_text(PAGE.format(name=loaded.name, rows="\n".join(rows)), encoding="utf-8")
+    write_text(folder / "hydrodynamics.md", PAGE.format(name=loaded.name, rows="\n".join(rows)))
     return "\n".join(lines), folder
 
 
@@ -138,7 +139,8 @@ def _draw(folder: Path, name: str, preset: Preset, tables: Mapping[str, Hydrodyn
             axes.set_xlabel("frequency (rad/s)")
         figure.suptitle(f"{name}: for each metre of her length, beam waves", x=0.01, ha="left")
         figure.legend(loc=BELOW, ncols=3)
-        figure.savefig(folder / "coefficients.png")
+        with replacing(folder / "coefficients.png") as part:
+            figure.savefig(part)
         figure, (left, right) = canvas(LOW, 1, 2)
         omega, moves = response
         for kind, one in moves.items():
@@ -153,4 +155,5 @@ def _draw(folder: Path, name: str, preset: Preset, tables: Mapping[str, Hydrodyn
         right.set_ylabel("retardation function of roll (N)")
         figure.suptitle(f"{name}: by linear theory", x=0.01, ha="left")
         figure.legend(loc=BELOW, ncols=3)
-        figure.savefig(folder / "response.png")
+        with replacing(folder / "response.png") as part:
+            figure.savefig(part)

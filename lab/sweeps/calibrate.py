@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.base.files import named
 from lab.base.lock import only_one
 from lab.preset.fields import dotted_key, taken_by
 from lab.preset.find import load
@@ -86,7 +87,7 @@ def calibrate(
     """
     preset = os.path.abspath(name) if os.path.isfile(name) else str(name)
     request = Request(preset, target, vary, json.loads(json.dumps(nested(overrides or {}), default=str)))
-    folder = Path(out) if out is not None else RENDERS / f"{Path(preset).stem}-calibration"
+    folder = named(out) if out is not None else RENDERS / f"{Path(preset).stem}-calibration"
     check_folder(request, folder)  # early, and again under the lock
     plan = parse_request(request)
     try:

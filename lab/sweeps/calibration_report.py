@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lab.base.errors import LabError
+from lab.base.files import replacing, write_text
 from lab.base.text import code, inline
 from lab.measures.value import LEVEL
 from lab.report.numbers import interval, plus_minus, with_error
@@ -176,10 +177,11 @@ class Calibration:
 def write_report(made: Calibration) -> Calibration:
     """Write summary.md, calibration.json and calibration.png into the calibration's folder. Raises LabError."""
     try:
-        (made.folder / "calibration.json").write_text(json.dumps(_data(made), indent=1) + "\n", encoding="utf-8")
-        with matplotlib.rc_context(STYLE | {"text.parse_math": False}):  # labels are texts of users, and may hold a $
-            figure(made).savefig(made.folder / "calibration.png")
-        (made.folder / "summary.md").write_text("\n".join(_page(made)) + "\n", encoding="utf-8")
+        write_text(made.folder / "calibration.json", json.dumps(_data(made), indent=1) + "\n")
+        plain = STYLE | {"text.parse_math": False}  # labels are texts of users, and may hold a $
+        with matplotlib.rc_context(plain), replacing(made.folder / "calibration.png") as part:
+            figure(made).savefig(part)
+        write_text(made.folder / "summary.md", "\n".join(_page(made)) + "\n")
     except OSError as error:
         raise LabError(f"{made.folder} cannot be written ({error.strerror or error}): make room there.") from error
     return made

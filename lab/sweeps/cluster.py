@@ -28,6 +28,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from lab.base.errors import LabError
+from lab.base.files import replacing
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
 from lab.preset.recorded import from_table, to_table
@@ -253,9 +254,8 @@ def _put(sent: Files, folder: Path) -> None:
         for name, content in sent.items():
             if not PLAIN.fullmatch(name):
                 raise LabError(f"--cluster: a worker sent a file for another folder ({quoted(name)}): do not use it.")
-            unfinished = folder / f"{name}.new"
-            unfinished.write_bytes(content)
-            unfinished.replace(folder / name)
+            with replacing(folder / name) as part:
+                part.write_bytes(content)
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror}): make room there.") from error
 

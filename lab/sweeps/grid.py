@@ -12,6 +12,7 @@ import numpy as np
 from lab.assembly.grains import grain_count
 from lab.assembly.water import most_drops
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import resolved_from, to_table
 from lab.runs.alike import alike, apart
@@ -62,9 +63,7 @@ class Sweep:
         path = folder / FILE_NAME
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            unfinished = path.with_name(f"{FILE_NAME}.new")
-            unfinished.write_text(json.dumps(content, indent=1), encoding="utf-8")
-            unfinished.replace(path)
+            write_text(path, json.dumps(content, indent=1))
         except OSError as error:
             raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
 

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.base.errors import LabError
+from lab.base.files import replacing, write_text
 from lab.base.progress import Progress
 from lab.base.text import cell, code, inline, one_line, printable
 from lab.measures.value import Value
@@ -53,7 +54,7 @@ def write_report(
         if video and (film := _film(name, points, folder, progress)):
             files["video"] = film
         page = folder / "summary.md"
-        page.write_text("\n".join(_page(name, axes, points, list(shown), files, folder)), encoding="utf-8")
+        write_text(page, "\n".join(_page(name, axes, points, list(shown), files, folder)))
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error
     files["summary"] = page
@@ -97,7 +98,7 @@ def _table(axes: Mapping[str, Sequence], points: Sequence[Point], folder: Path) 
 
 
 def _write_table(rows: Sequence[Row], path: Path) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writerow({key: cell(key) for key in rows[0]})
         writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
@@ -122,7 +123,8 @@ def _figures(
             unit = "" if value.unit == "1" else f" ({value.unit})"
             _draw(figure, axes, means, stds, key.replace("_", " ") + unit, _bars(points, key))
             drawn[key] = folder / f"{key}.png"
-            figure.savefig(drawn[key])
+            with replacing(drawn[key]) as part:
+                figure.savefig(part)
     return drawn
 
 

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from lab.base.errors import LabError
+from lab.base.files import write_text
 
 FORMAT = "cargo-shift-lab calibration 1"
 FILE_NAME = "asked.json"  # marks a folder as that of a calibration
@@ -47,6 +48,6 @@ def write_request(request: Request, folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         content = json.dumps({"format": FORMAT, **asdict(request)}, indent=1)
-        (folder / FILE_NAME).write_text(content + "\n", encoding="utf-8")
+        write_text(folder / FILE_NAME, content + "\n")
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error

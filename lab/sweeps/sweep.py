@@ -11,6 +11,7 @@ from pathlib import Path
 
 from lab.assembly.water import particles
 from lab.base.errors import LabError, Unusable
+from lab.base.files import named
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.recording import FILE_NAME as RECORDING
@@ -59,7 +60,7 @@ def run_sweep(
     KeyboardInterrupt; finished points are kept.
     """
     sweep = define_sweep(name, axes, overrides)
-    folder = Path(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
+    folder = named(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
     return _complete(sweep, folder, video, quiet, cluster)
 
 

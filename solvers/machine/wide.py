@@ -19,6 +19,7 @@ from taichi.lang.matrix import make_matrix
 from solvers.machine import compiling
 
 OF_OUTLINES = 4  # lanes of a block
+LANES = (0, OF_OUTLINES, 8, 16)  # of outlines, and of discs by the width of registers
 
 
 @contextmanager

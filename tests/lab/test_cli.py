@@ -46,6 +46,13 @@ def runner(monkeypatch):
     return stand_in(monkeypatch, "lab.runs.runner", "run_preset", result)
 
 
+@pytest.mark.parametrize("command", ["run", "sweep", "reproduce granular", "poster x", "render x", "hull x", "schema"])
+def test_an_empty_name_is_refused_and_not_the_current_folder(command):
+    """As of a variable of the shell that is not set."""
+    done = call(*command.split(), "--out", "")
+    assert done.exit_code == 2 and "the name is empty; write . for the current folder" in done.stderr
+
+
 def test_help_version_and_list():
     for command in ("run", "render", "explain", "sweep", "resume"):
         assert f"cargolab {command}" in call(command, "-h").stdout

@@ -2,6 +2,7 @@
 
 from PIL import Image, ImageDraw, ImageFont
 
+from lab.base.text import heading
 from lab.paint import decorations as deco
 from lab.paint.page.layout import Box
 
@@ -31,6 +32,7 @@ class Texts:
 
         anchor: l, m, r across, and a (top), m, s (bottom) down.
         """
+        text = heading(text)
         if not text:
             return
         width, height = box[2] - box[0], box[3] - box[1]

@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image
 
 from lab.base.errors import LabError
+from lab.base.files import replacing
 
 FORMATS = {".gif": 20.0, ".webp": 30.0}  # pictures a second at most
 MOST = 1200  # pictures, which are all held in memory
@@ -30,7 +31,7 @@ def write_animation(out: Path, pictures: Iterable[np.ndarray], rate: float) -> P
         images.append(Image.fromarray(picture))
         if len(images) > MOST:
             raise LabError(f"{out} would have more than {MOST} pictures: film a shorter part, or faster with --speed.")
-    part, lasts = out.with_suffix(f".part{out.suffix}"), round(1000.0 / rate)
+    lasts = round(1000.0 / rate)
     if out.suffix == ".gif":
         chosen = images[:: max(1, len(images) // SAMPLES)]
         strip = Image.new("RGB", (images[0].width, images[0].height * len(chosen)))
@@ -38,9 +39,9 @@ def write_animation(out: Path, pictures: Iterable[np.ndarray], rate: float) -> P
             strip.paste(image, (0, k * images[0].height))
         palette = strip.quantize(COLOURS)
         images = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
-        images[0].save(part, save_all=True, append_images=images[1:], duration=lasts, loop=0, optimize=False)
+        options = {"optimize": False}
     else:
         options = {"quality": QUALITY, "method": 3, "minimize_size": False}
+    with replacing(out) as part:
         images[0].save(part, save_all=True, append_images=images[1:], duration=lasts, loop=0, **options)
-    part.replace(out)
     return out

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.base.files import replacing
 from lab.recording import versions
 from lab.report.kept import processor
 from lab.studies.engine import code
@@ -26,8 +27,7 @@ def remembered(path: Path, said: str, make: Callable[[], Mapping[str, np.ndarray
         said = f"{said}, anew: what was kept was made by other code or on another machine"
     print(said, flush=True)
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part.npz")
-    np.savez(part, **make(), **{MADE: np.array(here)})
-    part.replace(path)
+    with replacing(path) as part:
+        np.savez(part, **make(), **{MADE: np.array(here)})
     with np.load(path) as found:
         return {name: values for name, values in found.items() if name != MADE}

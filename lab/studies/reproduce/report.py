@@ -104,8 +104,7 @@ def _finding(
 def _made(runs: Sequence[Outcome], command: str) -> Made:
     """What made the latest of the runs; the processor is the one that tells of them."""
     with open_recording(runs[-1].folder) as recording:
-        version = recording.versions.get("cargo-shift-lab", "?")
-        return Made(version, recording.created[:10], processor(), f"cargolab {command}")
+        return Made(recording.version, recording.created[:10], processor(), f"cargolab {command}")
 
 
 def _counts(rows: Sequence[Row]) -> list[int]:

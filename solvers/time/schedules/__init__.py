@@ -6,6 +6,7 @@
 """
 
 from solvers.machine.errors import Unavailable
+from solvers.machine.wide import LANES
 from solvers.time.schedules.per_band import PerBand
 from solvers.time.schedules.per_grain import PerGrain
 from solvers.time.schedules.per_world import PerWorld
@@ -40,6 +41,15 @@ def units_a_world(schedule: str, worlds: int, grains: int, threads: int) -> int:
     if schedule == "per-grain":
         return max(1, grains)
     return max(1, min(threads // worlds, grains // 2)) if schedule == "per-band" else 1
+
+
+def check_cut(units: int, schedule: int, vectors: int, grains: int) -> None:
+    """Raise ValueError for units a world of `grains`, a schedule's number, or lanes that no simulation of these has.
+
+    A state tells them, and arrays are made by them: one from a file could ask for any memory.
+    """
+    if not 1 <= units <= max(1, grains) or not 0 <= schedule < len(SCHEDULES) or vectors not in LANES:
+        raise ValueError("the state is cut in a way that no schedule has")
 
 
 def moved(scene) -> int:

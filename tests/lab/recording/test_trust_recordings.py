@@ -272,7 +272,7 @@ def test_nothing_of_another_file_is_copied(sound, tmp_path):
     with h5py.File(folder / "recording.h5", "r+") as file:
         stored_elsewhere(file, "tank/outline")
     refused(call("resume", folder, "--quiet"))
-    assert not list(folder.glob("*.new"))
+    assert not list(folder.glob("*.part*"))
 
 
 def test_an_array_larger_than_half_the_memory_is_not_read(sound, monkeypatch):

@@ -6,12 +6,17 @@ import re
 from itertools import product
 from pathlib import Path
 
+import h5py
 import pytest
+from click.testing import CliRunner
 from markdown_it import MarkdownIt
 
 from lab.base.errors import LabError
 from lab.base.progress import Progress
+from lab.cli import main
 from lab.recording import open_recording
+from lab.recording.layout import fixed_text
+from lab.report.file import write_report as write_file
 from lab.report.page import Page
 from lab.report.plots import write_plots
 from lab.studies import gallery
@@ -105,6 +110,64 @@ def test_any_title_is_drawn(text, tmp_path):
     with open_recording(tmp_path) as recording:
         assert recording.preset.title == text
         assert write_plots(recording, {}, tmp_path)
+
+
+@pytest.mark.parametrize("text", [NASTY[10], pytest.param(NASTY[3], marks=pytest.mark.slow)])
+def test_labels_and_units_of_a_file_are_drawn_as_they_stand(text, tmp_path):
+    """Those of a quantity are attributes of its data set. A scale of powers of ten keeps its formulas."""
+    with recorder(tmp_path) as writer:
+        for now in (0.0, 1.0, 2.0):
+            writer.sample(sample(now))
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        for name in ("contacts", "kinetic", "wall_force"):
+            file[f"series/{name}"].attrs["long_name"] = fixed_text(text + " $")
+            file[f"series/{name}"].attrs["plot"] = True
+    with open_recording(tmp_path) as recording:
+        assert text + " $" in {quantity.label for quantity in recording.quantities.values()}
+        assert write_plots(recording, {}, tmp_path)
+    assert write_file(tmp_path)
+
+
+def test_a_recording_that_does_not_say_what_made_it_has_a_report(tmp_path):
+    with recorder(tmp_path) as writer:
+        writer.sample(sample(0.0))
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        file.attrs["versions"] = fixed_text("{}")
+    (page,) = write_file(tmp_path)
+    assert "Cargo Shift Lab, version unknown." in page.read_text()
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        file.attrs["versions"] = fixed_text('{"cargo-shift-lab": {"a": 1}}')
+    with pytest.raises(LabError, match="attribute versions is not what the lab writes there"):
+        open_recording(tmp_path)
+
+
+def test_a_label_of_a_million_letters_is_refused(tmp_path):
+    recorder(tmp_path).close()
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        file["series/kinetic"].attrs["long_name"] = fixed_text("x" * 1000)
+    with pytest.raises(LabError, match="longer label than the lab writes"):
+        open_recording(tmp_path)
+
+
+@pytest.mark.parametrize("text", [NASTY[8], pytest.param(NASTY[3] * 2000, marks=pytest.mark.slow)])
+def test_a_title_commands_no_terminal_and_no_browser_and_fits_a_picture(text, tmp_path):
+    """A preset's reader refuses such characters, but a recording's preset may come from anywhere."""
+    folder = nasty_run(tmp_path / "run", text)
+    for words in (("report", folder), ("poster", folder, "--width", 320, "--height", 180), ("run", "--replay", folder)):
+        done = CliRunner().invoke(main, [*map(str, words)], prog_name="cargolab")
+        assert isinstance(done.exception, SystemExit | None) and done.exit_code in (0, 2), done.exception
+        assert_printable(done.output)
+    assert_printable((folder / "report.html").read_text())
+    assert (folder / "poster.png").exists()
+
+
+@pytest.mark.parametrize("command", ["explain", "stability"])
+def test_what_commands_print_has_no_control_codes(command, monkeypatch):
+    monkeypatch.setattr("lab.report.explain.explain", lambda _: NASTY[8])
+    monkeypatch.setattr("lab.report.stability.judge", lambda *_: (NASTY[8], Path("x")))
+    done = CliRunner().invoke(main, [command, "ship/handysize-grain"], prog_name="cargolab")
+    assert done.exit_code == 0 and "red" in done.output
+    assert_printable(done.output)
 
 
 # ---- sweeps

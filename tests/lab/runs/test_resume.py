@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -263,6 +264,19 @@ def test_a_damaged_checkpoint_is_refused_in_one_sentence(tmp_path):
         for name, values in whole.state.items():
             np.testing.assert_array_equal(kept.state[name], values)
     assert refused > 1500
+
+
+@pytest.mark.parametrize(("place", "number"), [(4, 0), (4, 10**9), (4, 17), (5, 3), (6, 10**9), (6, 3), (1, 3)])
+def test_a_checkpoint_that_asks_for_another_cut_is_refused(done, tmp_path, place, number):
+    """Its units a world, schedule, lanes and room for contacts decide how large arrays are."""
+    _, cut, _ = done
+    folder = shutil.copytree(cut, tmp_path / "run")
+    kept = read_checkpoint(folder)
+    numbers = kept.state["numbers"].copy()
+    numbers[place] = number
+    replace(kept, state={**kept.state, "numbers": numbers}).write(folder)
+    with pytest.raises(LabError, match="its checkpoint is of another scene: start the run again"):
+        resume_run(folder, video=False, quiet=True)
 
 
 @pytest.mark.slow  # that a damaged row is told is in `tests/lab/recording/test_damage.py`

@@ -1,5 +1,6 @@
 """Sweeps on a cluster: the results equal those of this machine, whatever happens to the workers."""
 
+import errno
 import json
 import os
 import resource
@@ -265,9 +266,11 @@ def test_a_worker_writes_into_no_other_folder(tmp_path, name):
     assert not list((tmp_path / "run").iterdir())
 
 
-def test_a_full_folder_is_named(tmp_path):
-    """What is written to /dev/full ends as on a disk without room."""
-    (tmp_path / "recording.h5.new").symlink_to("/dev/full")
+def test_a_full_folder_is_named(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(LabError, match=r"cannot be written \(No space left on device\): make room there"):
         cluster._put({"recording.h5": b"x" * 10}, tmp_path)
 
