@@ -54,6 +54,7 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
 @click.option(
     "--scale", type=click.FloatRange(1e-4, 1e4), default=1.0, show_default=True, help="Metres in a surface's unit."
 )
+@click.option("--fair", is_flag=True, help="Fair curves between the offsets of a station, in place of straight lines.")
 @click.option(
     "--lbp", type=click.FloatRange(0, 1e3, min_open=True), metavar="M", help="Her length between perpendiculars, m."
 )
@@ -73,8 +74,9 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
 def hull(file: Path, out: Path | None, **asked) -> None:
     """Hydrostatics and cross curves of the hull in FILE; with --weights her draughts, levers and criteria.
 
-    FILE is a CSV of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
-    station from the keel up), or a closed surface as STL (x forward, y to starboard, z up). Masses are in t, fsm in
+    FILE is a table of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
+    station from the keel up), or a matrix of stations and waterlines, or a closed surface as STL (x forward, y to
+    starboard, z up). Masses are in t, fsm in
     t m, stowage in m3/t, moments of grain in m4; filling is partly-filled, filled or filled-as-loaded; kind is opening
     or deck. With --weights she is judged by the IS Code, with --wind by its weather criterion, with --grain by the
     Grain Code, with --points up to the angle of downflooding.

@@ -1,45 +1,55 @@
-"""Small tables of a ship as CSV: rows with a name and a few numbers, each error one sentence with row and remedy."""
+"""Small tables of a ship: rows with a name and a few numbers, each error one sentence with row and remedy."""
 
-import csv
+import re
 from collections.abc import Sequence
-from io import StringIO
-from itertools import islice
 from math import isfinite
 from pathlib import Path
 
 from lab.base.errors import LabError
-from lab.base.files import read_bytes
+from lab.base.sheets import NONE, read_sheet
 
-LARGEST_FILE = 8_000_000  # bytes
 MOST = 10_000  # rows
-LONGEST = 200  # letters of a name or a number; errors quote them whole
+UNIT = re.compile(r"\s*[\[(]\s*(?P<unit>[^\])]*?)\s*[\])]$")
+UNITS = {"mass": ("t",), "fsm": ("t m", "tm", "t*m"), "stowage": ("m3/t", "m³/t"), "moment": ("m4", "m⁴")}
 
 
 def read_rows(path: Path, needed: Sequence[str], perhaps: Sequence[str], what: str) -> list[dict[str, str]]:
-    """The rows of a CSV file as texts by column. Raises LabError unless it has the columns needed.
+    """The rows of a file as texts by column, decimals behind points. Raises LabError unless it has the columns needed.
 
     `what` names the table in the error; columns that may be left out are "" there.
     """
-    try:
-        content = read_bytes(path, LARGEST_FILE + 1)
-        if content is None or len(content) > LARGEST_FILE:
-            raise LabError(f"{path} is no table, or one of over {LARGEST_FILE // 1_000_000} MB; look at its name.")
-        if b"\0" in content:
-            raise LabError(f"{path} is no text but binary data; look at its name.")
-        table = csv.DictReader(StringIO(content.decode("utf-8-sig"), newline=""))
-        rows = list(islice(table, MOST + 1))
-    except (OSError, ValueError, csv.Error):
-        raise LabError(f"{path} cannot be read as a CSV file; look at its name.") from None
-    if len(rows) > MOST:
-        raise LabError(f"{path.name}: {what} has at most {MOST} rows; is it one?")
-    texts = [text for row in rows for text in row.values() if isinstance(text, str)]
-    if max(map(len, texts), default=0) > LONGEST:
-        raise LabError(f"{path.name}: {what} has a text of more than {LONGEST} letters; is it one?")
-    missing = [name for name in needed if not rows or name not in rows[0]]
-    if missing:
+    sheet = read_sheet(path, MOST)
+    line, first = sheet.rows[0]
+    known = (*needed, *perhaps)
+    names = [_named(cell, known, f"{path.name}: line {line}") for cell in first]
+    if len(sheet.rows) < 2 or any(name not in names for name in needed):
         more = f" and perhaps {', '.join(perhaps)}" if perhaps else ""
         raise LabError(f"{path.name}: {what} has the columns {', '.join(needed)}{more}.")
-    return [{key: (row.get(key) or "").strip() for key in (*needed, *perhaps)} for row in rows]
+    if twice := next((name for name in known if names.count(name) > 1), None):
+        raise LabError(f"{path.name}: line {line}: the column {twice} is there twice.")
+    found = []
+    for number, cells in sheet.rows[1:]:
+        if len(cells) > len(names):
+            raise LabError(f"{path.name}: line {number}: has {len(cells)} cells for {len(names)} columns.")
+        row = dict(zip(names, [*cells, *[""] * (len(names) - len(cells))], strict=True))
+        found.append({key: _plain(sheet.number, row.get(key, "")) for key in known})
+    return found
+
+
+def _named(cell: str, known: Sequence[str], where: str) -> str:
+    """A column's name without its unit. Raises LabError for one that is not in the lab's units."""
+    unit = UNIT.search(cell)
+    name = re.sub(r"[\s_-]+", "_", UNIT.sub("", cell).strip().lower())
+    asked = UNITS.get(name, ("m",))
+    if unit and name in known and unit["unit"].lower() not in ("", *asked):
+        raise LabError(f"{where}: {cell} has to be in {asked[0]}; give it so.")
+    return name
+
+
+def _plain(number, cell: str) -> str:
+    """A cell with a point before decimals; "" for an empty one."""
+    value = number(cell)
+    return "" if cell in NONE else cell if value is None else cell.replace(",", ".")
 
 
 def number_of(row: dict[str, str], key: str, number: int, path: Path, least: float | None = None) -> float:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.offsets import read_offsets, rows_of, text_of
+from lab.assembly.offsets import is_plain, read_offsets, rows_of, text_of
 from lab.base.errors import LabError
 from lab.base.files import write_text
 from lab.measures.naval_levers import draw_levers
@@ -33,7 +33,8 @@ class Asked:
     """What is asked of a hull: files of weights, points, grain and holds, wind (area m², lever m), a section's place.
 
     The water's density is in kg/m³; `stations` and `scale` (metres in the file's unit) are of surfaces. `lbp` and `lwl`
-    are her lengths (m) between perpendiculars, from the aft one at x = `ap` (m), and in the waterline.
+    are her lengths (m) between perpendiculars, from the aft one at x = `ap` (m), and in the waterline. With `fair` the
+    offsets of a station are joined by fair curves.
     """
 
     density: float = 1025.0
@@ -50,13 +51,24 @@ class Asked:
     lbp: float | None = None
     lwl: float | None = None
     ap: float = 0.0
+    fair: bool = False
 
 
-def read_form(path: Path, stations: int, scale: float) -> Form:
+def read_form(path: Path, asked: Asked) -> Form:
     """The hull of a file, by its ending. Raises LabError."""
-    if path.suffix.lower() in SURFACES:
-        return read_surface(path, stations, scale)
-    return read_offsets(path)
+    if path.suffix.lower() not in SURFACES:
+        return read_offsets(path, asked.fair)
+    if asked.fair:
+        raise LabError(f"{path.name}: --fair is of tables of offsets; a surface says what is between its points.")
+    return read_surface(path, asked.stations, asked.scale)
+
+
+def between_offsets(path: Path, form: Form, fair: bool) -> str:
+    """What lies between the offsets of a station, and how much it matters to her volume."""
+    other, deepest = read_offsets(path, not fair), np.full(len(form.x), DEEPEST * form.depth)
+    more = form.displaced(deepest)[0] / other.displaced(deepest)[0] - 1.0
+    curved, straight = ("fair curves", "straight lines") if fair else ("straight lines", "fair curves (--fair)")
+    return f"between offsets {curved}: {100.0 * more:+.2f} % of volume beside {straight}"
 
 
 def examine(path: Path, folder: Path, asked: Asked) -> str:
@@ -67,8 +79,8 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
     for name in WITH_WEIGHTS:
         if getattr(asked, name) and not asked.weights:
             raise LabError(f"--{name}: needs --weights, by which she floats; give both.")
-    form, water = read_form(path, asked.stations, asked.scale), Water(asked.density)
-    form = between(form, asked.lbp, asked.lwl, asked.ap)
+    water, of_surface = Water(asked.density), path.suffix.lower() in SURFACES
+    form = between(read_form(path, asked), asked.lbp, asked.lwl, asked.ap)
     try:
         written = {
             "hydrostatics": tables.hydrostatics(form, water, DEEPEST * form.depth),
@@ -78,6 +90,8 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
             f"{path.name}: {len(form.x)} stations over {np.ptp(form.x):.5g} m, depth {form.depth:.4g} m",
             f"perpendiculars {perpendiculars(form)}",
         ]
+        if not of_surface:
+            lines.append(between_offsets(path, form, asked.fair))
         holds = read_holds(asked.holds, form) if asked.holds else {}
         written |= {f"hold-{name}": tables.hold(hold) for name, hold in holds.items()}
         if asked.weights:
@@ -89,7 +103,7 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
     except Unavailable as error:
         raise LabError(f"{path.name}: {error}") from None
     tables.write(written, folder)
-    if path.suffix.lower() in SURFACES:
+    if of_surface or asked.fair or not is_plain(path):
         write_text(folder / "offsets.csv", text_of(list(rows_of(form))))
     return "\n".join([*lines, "", SIGNS])
 
