@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from lab.base.files import replacing
+from lab.base.turn import in_turn
 from lab.paint import decorations as deco
 from lab.paint import palette
 from lab.paint.cargo.looks import UNKNOWN, Stowage, looks
@@ -24,6 +25,7 @@ ABOVE = 1.25  # height of the part of the tank that is shown, relative to the be
 WALL = 5.0  # pixels
 
 
+@in_turn
 def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
     """Paint the first frames of recordings into one PNG file; folders: by cargo name. Raises LabError."""
     initialise()

@@ -14,6 +14,7 @@ from PIL.PngImagePlugin import PngInfo
 from lab import __version__
 from lab.base.errors import LabError
 from lab.base.files import replacing
+from lab.base.turn import in_turn
 from lab.paint.decorations import number
 from lab.paint.encoder import says, write_video
 from lab.paint.film import Film, choose_beds, choose_look
@@ -34,6 +35,7 @@ HELD = 3.0  # s for which the last picture is held if a ship is lost
 Progress = Callable[[int, int], None]
 
 
+@in_turn
 def render_recording(
     path: Path | str,
     out: Path | str | None = None,
@@ -98,6 +100,7 @@ def is_made(target: Path, recording: Path, png: bool, comment: str) -> bool:
         return False
 
 
+@in_turn
 def render_grid(
     beds: Sequence[Path | str | tuple[Path | str, int]],
     captions: Sequence[str],
@@ -156,6 +159,7 @@ def _frozen_twin(shown: list[Bed], path: Path | str) -> list[Bed]:
         return [frozen_bed(loose, recording, f"{named}frozen")]
 
 
+@in_turn
 def poster(
     path: Path | str,
     out: Path | str | None = None,
@@ -197,6 +201,7 @@ def telling_time(path: Path | str, world: int | None = None) -> float:
         return float(min(event.time + AFTER, last) if event else first + LATE * (last - first))
 
 
+@in_turn
 def contact_sheet(
     path: Path | str, out: Path | str | None = None, *, world: int | None = None, count: int = MOMENTS, **wishes: object
 ) -> Path:

@@ -12,6 +12,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.files import named
 from lab.base.lock import only_one
 from lab.base.progress import Progress
+from lab.base.turn import in_turn
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.paint.beside import Beside, second_process
@@ -43,6 +44,7 @@ class Result:
         return open_recording(self.folder)
 
 
+@in_turn
 def run_preset(
     name: str | Path,
     overrides: Mapping | None = None,
@@ -70,6 +72,7 @@ def run_preset(
             return _complete(run, None, progress, plots, video, beside)
 
 
+@in_turn
 def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False) -> Result:
     """Continue a run that was killed, interrupted or stopped, from its checkpoint, with the same bits.
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from lab.assembly.scene import build
 from lab.assembly.water import air_volumes_of, volumes_of
+from lab.base.turn import in_turn
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import LoadedPreset
@@ -28,6 +29,7 @@ GRAINS = 50  # largest number of grains, or of particles of water, that is recor
 ROLL = 0.1  # amplitude (rad) of a ship's roll
 
 
+@in_turn
 def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
     """The measures of a preset by name, with their units; their values mean nothing. Raises LabError (`build`)."""
     preset = loaded.resolved

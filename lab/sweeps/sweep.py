@@ -14,6 +14,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.files import named
 from lab.base.lock import only_one
 from lab.base.progress import Progress
+from lab.base.turn import in_turn
 from lab.recording import FILE_NAME as RECORDING
 from lab.recording import open_recording
 from lab.runs.batch import Run, prepare, run_batch
@@ -117,6 +118,7 @@ def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[
     return found
 
 
+@in_turn
 def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str | None = None) -> SweepResult:
     """Run the points that are not done, on the cluster as far as possible, and summarise all points."""
     plan = list(_plan(sweep))  # reports an impossible point early

@@ -9,6 +9,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.base.trust import BEYOND
+from lab.base.turn import in_turn
 from lab.recording import open_recording
 from lab.runs.runner import Result, free_folder, recorded_preset, report
 from lab.view.live import Live
@@ -17,6 +18,7 @@ from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
 LARGEST = 1e3  # SI: upper bound on the value of any control
 
 
+@in_turn
 def replay(path: Path | str, out: Path | str | None = None, *, video: bool = True, quiet: bool = False) -> Result:
     """Run a recording of `cargolab view` again (default: in a folder beside it), and report it as a run.
 

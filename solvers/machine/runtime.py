@@ -52,6 +52,7 @@ compiling.copy_once()
 _most_cores = 2**31
 _running: tuple | None = None
 _used = False  # whether a state was made since the last start
+_started_by = 0  # the process that has started Taichi; 0: none yet
 _live: WeakSet = WeakSet()  # states (`machine.state`) that have not been released
 _threads: list[int] = []  # Taichi's threads in the order in which they started (Linux)
 
@@ -80,8 +81,13 @@ def choose_arch(wanted: str, precision: str, water: bool = False, particles: int
     has no 64-bit functions, so it serves f32 only. Software Vulkan is 5 to 8 times slower than the CPU, so it is used
     on request only. It cannot compile the kernels of particles of water (Taichi 1.7.4; "Value does not yet exist",
     which is known of other programs, too), so `water` has none. Raises Unavailable, one sentence, if the wanted arch
-    is not there.
+    is not there, or if nothing can be computed in this process.
     """
+    if _started_by not in (0, os.getpid()):
+        raise Unavailable(
+            "this process was forked from one in which the lab has computed, and has none of its threads: start it "
+            "anew, in Python by multiprocessing.get_context('spawn'), or fork before the first run."
+        )
     if wanted == "auto":
         least = WORTH_OF_WATER if water else WORTH_OF_GRAINS
         if particles < least * cores_of_machine():  # processes side by side have one device as well
@@ -141,8 +147,10 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
 
 
 def _start(threads: int, arch: str, real, options: dict) -> None:
+    global _started_by
     before = _own_threads()
     address_space.check()
+    _started_by = os.getpid()
     ti.init(
         arch=getattr(ti, arch),
         default_fp=real,
