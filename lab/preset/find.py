@@ -34,6 +34,7 @@ LARGEST_FILE = 1_000_000  # bytes
 # a.b.c…, grow with the square, and a key is within one line.
 MOST_DOTS = 10_000_000
 
+FILE = "file"  # the key of a table that may be said in place of the table: history = "record.csv"
 QUICK = "-quick"  # suffix of a preset's name: its quick variant
 # Keys that describe one experiment and are not inherited by presets based on it.
 OWN_KEYS = ("title", "source", "reports", "based_on")
@@ -95,11 +96,10 @@ class Layer:
     def _located_value(self, value: object, rest: str) -> object:
         if rest and isinstance(value, Mapping):
             return self._with_full_path(dict(value), rest)
-        if rest or not isinstance(value, str):
+        if not isinstance(value, str) or rest not in ("", FILE):
             return value
-        if value.startswith(PREFIX):
-            return _measured(value)
-        return os.path.abspath(self.folder / value)
+        path = _measured(value) if value.startswith(PREFIX) else os.path.abspath(self.folder / value)
+        return {rest: path} if rest else path
 
 
 def _measured(value: str) -> str:

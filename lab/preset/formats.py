@@ -57,7 +57,7 @@ def _format(table: Mapping, shown: str) -> int | None:
 def recorded(table: Mapping) -> Mapping:
     """The table of a recorded preset in the keys of the present format."""
     if "format" in table or not isinstance(table.get("tank"), Mapping):
-        return table
+        return _timed(table)
     kept = dict(table)
     if "water" in kept:
         kept["sea"] = kept.pop("water")
@@ -70,6 +70,21 @@ def recorded(table: Mapping) -> Mapping:
     kept["kinds"] = {name: _kind(kind) for name, kind in (kept.get("kinds") or {}).items()}
     kept["motion"] = _motion(kept.get("motion") or {})
     return kept
+
+
+def _timed(table: Mapping) -> dict:
+    """Motions from files had times in seconds, and no key that says so."""
+    kept = dict(table)
+    for name in ("motion", "axle"):
+        kept[name] = _in_seconds(kept.get(name), "history" if name == "motion" else "slide")
+    if isinstance(kept.get("parts"), Mapping):
+        kept["parts"] = {name: _in_seconds(part, "history") for name, part in kept["parts"].items()}
+    return kept
+
+
+def _in_seconds(table: object, key: str) -> object:
+    record = table.get(key) if isinstance(table, Mapping) else None
+    return {**table, key: {"time_unit": "s", **record}} if isinstance(record, Mapping) else table
 
 
 def _tank(tank: Mapping) -> dict:
@@ -109,4 +124,5 @@ def _motion(motion: Mapping) -> dict:
         return dict(motion)
     columns = {name: history[name] for name in ("time", "sway", "heave", "roll") if history.get(name)}
     record = {"file": {"name": "", "columns": columns}, "centre": history.get("centre", (0.0, 0.0))}
+    record |= {"length_unit": "m", "angle_unit": "rad", "time_unit": "s"}
     return {**motion, "history": record}

@@ -187,7 +187,7 @@ def check(preset: Preset) -> None:
     _check_matters(preset)
     if preset.grains is not None:
         _check_of_grains(preset)
-    check_motion(preset.motion)
+    check_motion(preset.motion, preset.tank.extent)
     check_parts(preset.parts, preset.tank.corners, preset.water is not None)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
     check_tanks(preset)
@@ -195,7 +195,8 @@ def check(preset: Preset) -> None:
     check_water(preset)
     check_air(preset)
     duration = duration_of(preset.run, preset.motion)
-    check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
+    others = preset.ship is not None, bool(preset.motion.parts), bool(preset.matters)
+    check_axle(preset.axle, *others, duration, max(preset.tank.extent))
     if preset.water is not None:
         check_solids(preset)
     check_stability(preset.stability, preset.ship)

@@ -47,5 +47,6 @@ def sloshing_period(preset: Preset) -> float | None:
 def _slide(axle: Axle) -> str:
     slide = axle.slide
     if slide.file is not None:
-        return f"as {slide.file.name} has it, up to {show(slide.motion.fastest(slide.soft_start), 'm/s')}"
+        fastest, hardest = slide.motion.fastest(slide.soft_start), slide.motion.hardest()
+        return f"as {slide.file.name} has it, up to {show(fastest, 'm/s')} and {hardest:.3g} m/s²"
     return f"by {show(slide.amplitude, 'm')} with a period of {show(slide.period, 's')}"

@@ -16,6 +16,7 @@ from lab.report import axle, coarse, grains, water
 from lab.report.ship import describe
 from solvers.fluid.timestep import steps_of_water
 from solvers.machine.runtime import available_cores, choose_arch
+from solvers.motion.history import Recorded
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
 
@@ -116,6 +117,9 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     motions = preset.motion.parts
     parts = [_motion(name, motion, scene.soft_start) for name, motion in motions.items()]
     rows.append(("motion", ", then ".join(parts) or ("as it rolls about its axle" if preset.axle else "none")))
+    for name, part in preset.parts.items():
+        moves = [_motion(move, motion, 0.0) for move, motion in part.moves.items()]
+        rows += [(f"motion of {name}", ", then ".join(moves))] * bool(moves)
     rows.append(("duration", show(preset.duration, "s") + " after settling" * bool(preset.grains)))
     return rows
 
@@ -143,8 +147,11 @@ def _tank(preset, scene) -> str:
 
 
 def _motion(name: str, motion, soft_start: float) -> str:
-    speed = motion.fastest(soft_start)
-    return f"{name}, up to {show(speed, 'rad/s' if motion.coordinate == 'turn' else 'm/s')}"
+    turns = motion.coordinate == "turn"
+    words = f"{name}, up to {show(motion.fastest(soft_start), 'rad/s' if turns else 'm/s')}"
+    if isinstance(motion, Recorded):
+        words += f" and {motion.hardest():.3g} {'rad' if turns else 'm'}/s²"
+    return words
 
 
 def _step(simulation: Simulation) -> list[tuple[str, str]]:

@@ -1,5 +1,6 @@
 """Recorded motion: smooth curves through samples of sway, heave and roll at any spacing."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
@@ -76,11 +77,7 @@ class Recorded:
     @cached_property
     def rests(self) -> tuple[bool, bool]:
         """Whether the record is at rest at its first and at its last sample."""
-        from scipy.interpolate import CubicSpline
-
-        speed = np.abs(CubicSpline(self.time, self.values)(self.time, 1))
-        limit = SLOW * speed.max()
-        return bool(speed[0] <= limit), bool(speed[-1] <= limit)
+        return at_rest(self.time, self.values)
 
     def duration(self) -> float:
         """Time from the first sample to the last (s)."""
@@ -98,6 +95,19 @@ class Recorded:
         """Upper bound on the speed (m/s or rad/s): the spline's largest plus the contribution of the soft start."""
         speed = _largest(self.curve.derivative())
         return speed + (STEEPEST / soft_start * _largest(self.curve) if soft_start else 0.0)
+
+    def hardest(self) -> float:
+        """The spline's largest acceleration (m/s² or rad/s²)."""
+        return float(np.abs(self.curve(self.curve.x, 2)).max())  # it is linear between samples
+
+
+def at_rest(time: Sequence[float], values: Sequence[float]) -> tuple[bool, bool]:
+    """Whether a record (n,) at times (n,) is at rest at its first and at its last sample."""
+    from scipy.interpolate import CubicSpline
+
+    speed = np.abs(CubicSpline(time, values)(time, 1))
+    limit = SLOW * speed.max()
+    return bool(speed[0] <= limit), bool(speed[-1] <= limit)
 
 
 def _largest(curve) -> float:

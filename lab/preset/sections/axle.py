@@ -5,17 +5,15 @@ from functools import cached_property
 from math import inf, pi
 from typing import Annotated
 
-import numpy as np
-
 from lab.base.errors import LabError
 from lab.preset.fields import ANY, Columns, Table
 from lab.preset.sections.history import KEY as KEY_OF_HISTORY
-from lab.preset.sections.history import MOST_SAMPLES, check_end, check_history, check_start
-from lab.preset.units import parse, show
+from lab.preset.sections.history import MOST_SAMPLES, Record, check_end, check_record, check_start
+from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit, Usual
 from solvers.motion import axle as solver
 from solvers.motion.harmonic import Sway
-from solvers.motion.history import History, Recorded
+from solvers.motion.history import Recorded
 
 SHORTEST = 0.1  # s, in which a tank with something in it is heeled
 Length = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
@@ -39,27 +37,25 @@ class Slide:
     ] = None
     time_column: Annotated[str, Doc("Name of the file's column with times (s).")] = "time"
     column: Annotated[str, Doc("Name of the file's column with the mass's place along the rail.")] = "x"
-    length_unit: Annotated[str, Doc("Unit of that column.")] = "m"
+    length_unit: Annotated[str | None, Doc("Unit of that column; m if left out.")] = None
+    time_unit: Annotated[str | None, Doc("Unit of the times; s if left out.")] = None
 
     @cached_property
     def motion(self) -> Sway | Recorded:
         """The slide as the solver takes it. Raises LabError."""
         if self.file is None:
             return Sway(self.amplitude, 1.0 / self.period, self.phase)
-        return self.record.motions["sway"]
+        return self.record.history.motions["sway"]
 
     @cached_property
-    def record(self) -> History:
-        """The slide's record, as a sway. Raises LabError for a unit of another kind, or a column that is not there."""
+    def record(self) -> Record:
+        """The slide's file as that of a sway. Raises LabError for a column that is not there."""
         columns = self.file.columns
         for key, name in (("time_column", self.time_column), ("column", self.column)):
             if name not in columns:
                 raise LabError(f"axle.slide.{key}: the file has no column {name}; it has {', '.join(columns)}.")
-        try:
-            unit = parse(f"1 {self.length_unit}", "m")
-        except LabError as error:
-            raise LabError(f"axle.slide.length_unit: {error}") from None
-        return History(columns[self.time_column], sway=tuple((unit * np.array(columns[self.column])).tolist()))
+        own = {"time": columns[self.time_column], "sway": columns[self.column]}
+        return Record(Table(self.file.name, own), self.length_unit, time_unit=self.time_unit)
 
 
 @dataclass(frozen=True)
@@ -98,11 +94,11 @@ class Axle:
         return solver.Axle(*own, **sliding)
 
 
-def check_axle(axle: Axle | None, ship: bool, moves: bool, holds: bool, duration: float) -> None:
+def check_axle(axle: Axle | None, ship: bool, moves: bool, holds: bool, duration: float, side: float) -> None:
     """Raise LabError for keys that contradict each other.
 
-    `ship`, `moves`, `holds`: whether there is a ship, a prescribed motion, anything in the tank; the run lasts for
-    `duration` (s).
+    `ship`, `moves`, `holds`: whether there is a ship, a prescribed motion, anything in the tank, whose larger side is
+    `side` (m); the run lasts for `duration` (s).
     """
     if axle is None:
         return
@@ -114,28 +110,28 @@ def check_axle(axle: Axle | None, ship: bool, moves: bool, holds: bool, duration
         least = show(SHORTEST, "s")
         raise LabError(f'axle.release: what is in the tank bears no sudden heel; give at least "{least}".')
     if axle.slide:
-        _check_slide(axle.slide, duration)
+        _check_slide(axle.slide, duration, side)
 
 
-def _check_slide(slide: Slide, duration: float) -> None:
+def _check_slide(slide: Slide, duration: float, side: float) -> None:
     harmonic = {"amplitude": slide.amplitude, "period": slide.period}
     if slide.file is not None:
         for name, given in harmonic.items():
             if given is not None:
                 raise LabError(f"axle.slide.{name}: the mass slides as its file has it; leave out {name}, or the file.")
-        _check_record(slide, duration)
+        _check_record(slide, duration, side)
         return
     for name, given in harmonic.items():
         if given is None:
             raise LabError(f"axle.slide.{name}: missing; give amplitude and period, or a file.")
 
 
-def _check_record(slide: Slide, duration: float) -> None:
+def _check_record(slide: Slide, duration: float, side: float) -> None:
     """Raise LabError for a record that no smooth curve fits, that starts in motion, or that ends before the run."""
     try:
-        check_history(slide.record)
-        check_start(slide.record, slide.soft_start or 0.0)
-        check_end(slide.record, duration if duration < inf else 0.0)
+        check_record(slide.record, side)
+        check_start(slide.record.history, slide.soft_start or 0.0)
+        check_end(slide.record.history, duration if duration < inf else 0.0)
     except LabError as error:
         raise LabError(_of_slide(str(error))) from None
 
@@ -144,6 +140,7 @@ def _of_slide(words: str) -> str:
     """What is said of a recorded motion of the tank, said of the slide."""
     changes = {
         KEY_OF_HISTORY: "axle.slide.file",
+        "motion.history": "axle.slide",
         "motion.soft_start": "axle.slide.soft_start",
         "the motion's record": "the slide's record",
         "sway": "the mass",

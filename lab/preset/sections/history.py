@@ -1,4 +1,4 @@
-"""A tank's motion from a file: convert its record to SI, and refuse what the tank could not follow."""
+"""A tank's motion from a file: smooth its record within its digits, convert it to SI, refuse what no tank follows."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,24 +11,33 @@ from lab.preset.fields import Columns, Table
 from lab.preset.units import parse, show
 from solvers.machine.marks import Doc, Unit
 from solvers.motion.history import LEAST_SAMPLES, History, Recorded
+from solvers.motion.rounded import MANY, even_times, smoothed
 
 KEY = "motion.history.file"
 MOST_SAMPLES = 100_000
 FASTEST = 1e3  # m/s or rad/s: a faster motion probably has wrong units
+HARDEST = 1e3  # m/s² or rad/s²: a hundred g, more than any tank is shaken or dropped with; mostly noise, or wrong units
+# Beyond these a logged record is asked to say its unit, since it may be in mm, deg or ms: in tanks' larger sides (rigs
+# move them by a part of one), in rad (57 deg; rigs roll by half of that), in s from sample to sample.
+FAR, TURNED, SLOW = 2.0, 1.0, 1.0
 AT_ZERO = 1e-3  # of the largest displacement: a record that starts closer to zero counts as starting at zero
 
 
 @dataclass(frozen=True)
 class Record:
-    """A recorded motion: a CSV file with the column time (s) and any of sway, heave and roll."""
+    """A recorded motion: a CSV file with the column time and any of sway, heave and roll.
+
+    It is smoothed within the last digit to which the file was printed (`solvers.motion.rounded`).
+    """
 
     file: Annotated[
         Table,
         Columns(("time",), ("sway", "heave", "roll"), MOST_SAMPLES),
-        Doc("CSV file with the column time (s) and any of sway, heave and roll."),
+        Doc("CSV file with the column time and any of sway, heave and roll."),
     ]
-    length_unit: Annotated[str, Doc("Unit of sway and heave in the file.")] = "m"
-    angle_unit: Annotated[str, Doc("Unit of roll in the file.")] = "rad"
+    length_unit: Annotated[str | None, Doc("Unit of sway and heave in the file; m if left out.")] = None
+    angle_unit: Annotated[str | None, Doc("Unit of roll in the file; rad if left out.")] = None
+    time_unit: Annotated[str | None, Doc("Unit of time in the file; s if left out.")] = None
     centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, y and z, about which the tank rolls.")] = (
         0.0,
         0.0,
@@ -37,16 +46,61 @@ class Record:
     @cached_property
     def history(self) -> History:
         """The motion in SI. Raises LabError for a unit of another kind, or where nothing moves."""
-        units = {
-            "sway": _in_si(self.length_unit, "length_unit", "m"),
-            "heave": _in_si(self.length_unit, "length_unit", "m"),
-            "roll": _in_si(self.angle_unit, "angle_unit", "rad"),
-        }
-        columns = {name: np.array(values) for name, values in self.file.columns.items() if name != "time"}
+        length, angle = in_si(self.length_unit, "length_unit", "m"), in_si(self.angle_unit, "angle_unit", "rad")
+        units = {"sway": length, "heave": length, "roll": angle}
+        columns = {name: np.array(values) for name, values in self.file.columns.items()}
+        time = columns.pop("time")
         if not columns:
             raise LabError(f"{KEY}: nothing but times; a column sway, heave or roll is needed.")
+        time, columns = as_moved(time, columns)
         moved = {name: tuple((units[name] * values).tolist()) for name, values in columns.items()}
-        return History(self.file.columns["time"], centre=self.centre, **moved)
+        seconds = in_si(self.time_unit, "time_unit", "s")
+        return History(tuple((seconds * time).tolist()), centre=self.centre, **moved)
+
+
+def as_moved(time: np.ndarray, columns: dict[str, np.ndarray]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Times (n,) and columns (n,) of a file without the rounding of their digits; unchanged if they are no record."""
+    if not (np.diff(time) > 0.0).all():
+        return time, columns
+    try:
+        with np.errstate(all="ignore"):
+            even = even_times(time)
+            return even, {name: smoothed(even, values) for name, values in columns.items()}
+    except (ValueError, ArithmeticError, np.linalg.LinAlgError):  # what is wrong with it, `check_history` says
+        return time, columns
+
+
+def check_record(record: Record, side: float) -> None:
+    """Raise LabError for a file that is no smooth motion, or in units that it should say; `side`: the tank's larger."""
+    _check_times(np.array(record.history.time))
+    _check_units(record, side)
+    check_history(record.history)
+
+
+def _check_units(record: Record, side: float) -> None:
+    """Raise LabError for a record that seems to be in other units than those of SI, and does not say its own."""
+    history = record.history
+    if len(history.time) < MANY:
+        return
+    if record.time_unit is None:
+        step = float(np.median(np.diff(history.time)))
+        _ask(step >= SLOW, "time_unit", f"samples are {show(step, 's')} apart", ("ms", "milliseconds"), "s")
+    for name, motion in history.motions.items():
+        far = float(np.ptp(motion.values))
+        if name == "roll" and record.angle_unit is None:
+            turned = float(np.abs(motion.values).max())
+            _ask(turned > TURNED, "angle_unit", f"roll reaches {turned:.4g} rad", ("deg", "degrees"), "rad")
+        elif name != "roll" and record.length_unit is None:
+            moved = f"{name} goes {far:.4g} m to and fro, beside a tank of {show(side, 'm')}"
+            _ask(far > FAR * side, "length_unit", moved, ("mm", "millimetres"), "m")
+
+
+def _ask(strange: bool, key: str, found: str, other: tuple[str, str], unit: str) -> None:
+    if strange:
+        short, name = other
+        raise LabError(
+            f'motion.history.{key}: {found}; say {key} = "{short}" if the file is in {name}, "{unit}" if it is right.'
+        )
 
 
 def check_history(history: History) -> None:
@@ -99,11 +153,18 @@ def _check_curve(name: str, motion: Recorded) -> None:
             usable = False
     if not usable:
         raise LabError(f"{KEY}: {name} moves too fast to be followed; look at its numbers and units.")
+    if motion.hardest() > HARDEST:
+        unit, key = f"{_rate(motion)}²", "angle_unit" if motion.coordinate == "turn" else "length_unit"
+        raise LabError(
+            f"{KEY}: {name} has accelerations of {motion.hardest():.3g} {unit}, and no tank is shaken by more than "
+            f"{HARDEST:g} {unit}; smooth out its noise, or look at {key} and time_unit."
+        )
 
 
-def _in_si(unit: str, key: str, symbol: str) -> float:
+def in_si(unit: str | None, key: str, symbol: str) -> float:
+    """One of a file's unit, or of SI's where none is said. Raises LabError for a unit of another kind."""
     try:
-        return parse(f"1 {unit}", symbol)
+        return parse(f"1 {symbol if unit is None else unit}", symbol)
     except LabError as error:
         raise LabError(f"motion.history.{key}: {error}") from None
 

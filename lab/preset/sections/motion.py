@@ -3,7 +3,7 @@
 from dataclasses import dataclass, make_dataclass
 from typing import Annotated
 
-from lab.preset.sections.history import Record, check_history, check_start
+from lab.preset.sections.history import Record, check_record, check_start
 from solvers.machine.marks import Doc, Interval, Unit
 from solvers.motion import MOTIONS
 
@@ -37,8 +37,8 @@ Motion = make_dataclass(
 Motion.__module__ = __name__  # so that it can be sent to another process
 
 
-def check_motion(motion: Motion) -> None:
-    """Raise LabError for a record that the tank cannot follow, or that starts in motion."""
+def check_motion(motion: Motion, extent: tuple[float, float]) -> None:
+    """Raise LabError for a record that a tank so large (m) cannot follow, or that starts in motion."""
     if motion.history:
-        check_history(motion.history.history)
+        check_record(motion.history, max(extent))
         check_start(motion.history.history, motion.soft_start)

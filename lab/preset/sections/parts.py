@@ -7,7 +7,7 @@ from typing import Annotated
 
 from lab.base.errors import LabError
 from lab.preset.outline import MOST_CORNERS, Point
-from lab.preset.sections.history import Record, check_history, check_start
+from lab.preset.sections.history import Record, check_record, check_start
 from lab.preset.units import needed, show
 from solvers.machine.marks import Doc
 from solvers.motion import MOTIONS
@@ -71,14 +71,17 @@ def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], wet: bool) 
         for key, _, default in () if wet else KEYS:
             if getattr(part, key) != default:
                 raise LabError(f"parts.{name}.{key}: goes with water, and there is none; leave this out.")
-        _check_motions(part, f"parts.{name}")
+        _check_motions(part, f"parts.{name}", _larger_side(outline))
 
 
-def _check_motions(part: Part, key: str) -> None:
-    """Raise LabError for a motion that starts elsewhere than where the part is drawn, or a record that is no motion."""
+def _check_motions(part: Part, key: str, side: float) -> None:
+    """Raise LabError for a motion that starts elsewhere than where the part is drawn, or a record that is no motion.
+
+    `side` is the larger of the tank (m).
+    """
     if part.history:
         try:
-            check_history(part.history.history)
+            check_record(part.history, side)
             check_start(part.history.history, 0.0)
         except LabError as error:
             fault, *_ = str(error).replace("motion.history", f"{key}.history").partition("; let it")
@@ -115,6 +118,9 @@ def _faults_of_move(part: Part) -> Iterator[tuple[str, str]]:
 
 def _near(point: Point, outline: Sequence[Point]) -> bool:
     """Whether a point is in the tank's bounding box widened by its larger side; a funnel may stand above the tank."""
-    bounds = [(min(axis), max(axis)) for axis in zip(*outline, strict=True)]
-    size = max(high - low for low, high in bounds)
+    bounds, size = [(min(axis), max(axis)) for axis in zip(*outline, strict=True)], _larger_side(outline)
     return all(low - size <= x <= high + size for x, (low, high) in zip(point, bounds, strict=True))
+
+
+def _larger_side(outline: Sequence[Point]) -> float:
+    return max(max(axis) - min(axis) for axis in zip(*outline, strict=True))

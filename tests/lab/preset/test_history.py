@@ -10,7 +10,10 @@ from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.preset.recorded import from_table, to_table
 from lab.preset.sections import history
+from lab.preset.sections.history import in_si
+from lab.report.explain import explain
 from lab.runs.runner import run_preset
+from solvers.motion.rounded import last_digits
 from tests.oracles.presets import MATERIAL, error_of
 
 TANK = f"""
@@ -175,6 +178,121 @@ def test_soft_start_permits_a_record_that_starts_in_motion(preset, tmp_path):
         "run.duration: 700 ms is longer than the motion's record, 600 ms, which ends with sway at"
     )
     assert load(preset, {"motion.soft_start": "0.2 s", "run.duration": "0.6 s"}).resolved.duration == 0.6
+
+
+LOGGED = np.arange(0.0, 8.005, 0.01)
+MOVED = 0.02 * np.sin(np.pi * LOGGED) * np.minimum(1.0, LOGGED) ** 2  # m: 20 mm at 0.5 Hz
+LARGEST = 0.2872  # m/s², of this formula
+
+
+def printed(folder, form="%.2f,%.3f", time=LOGGED, **columns):
+    """A record as a logger prints it."""
+    name, values = next(iter(columns.items()))
+    rows = [form % row for row in zip(time, values, strict=True)]
+    (folder / "record.csv").write_text("\n".join([f"time,{name}", *rows]) + "\n")
+
+
+def logged(**units) -> dict:
+    """Overrides of a preset whose history has these units and no others."""
+    return {f"motion.history.{key}": units.get(key, False) for key in ("length_unit", "angle_unit", "time_unit")}
+
+
+def untold(preset) -> str:
+    return error_of(load, preset, logged())
+
+
+@pytest.mark.parametrize("rate", [60.0, 100.0])
+def test_a_record_of_few_digits_moves_the_tank_smoothly(preset, tmp_path, rate):
+    """Printed to 1 mm and 10 ms; a spline through the digits has 6 · 1 mm/(10 ms)² = 60 m/s² at most.
+
+    Two smooth curves that print alike differ by less than q, hence in their second derivative by some √(q d⁴x/dt⁴)
+    (Landau & Kolmogorov), √(1 mm · 20 mm π⁴/s⁴) = 0.044 m/s²; three times as much is allowed.
+    """
+    time = np.arange(0.0, 8.0, 1.0 / rate)
+    moved = np.interp(time, LOGGED, MOVED)
+    printed(tmp_path, time=time, sway=moved)
+    motion = load(preset, logged()).resolved.motion.parts["history.sway"]
+    assert motion.hardest() == pytest.approx(LARGEST, abs=3 * 0.044)
+    assert np.abs(np.subtract(motion.values, np.round(moved, 3))).max() <= 0.5001e-3
+    assert np.diff(motion.time) == pytest.approx(1.0 / rate, rel=1e-3)
+
+
+def test_explain_tells_the_largest_acceleration(preset, tmp_path):
+    printed(tmp_path, sway=MOVED)
+    loaded = load(preset, logged())
+    hardest = loaded.resolved.motion.parts["history.sway"].hardest()
+    assert f"and {hardest:.3g} m/s²" in explain(loaded)
+
+
+def records(preset) -> list:
+    """Every record of a preset: of its tank, its parts and the mass that slides on it."""
+    slide = preset.axle and preset.axle.slide
+    found = [preset.motion.history, *(part.history for part in preset.parts.values())]
+    return [one for one in [*found, slide.record if slide and slide.file else None] if one]
+
+
+SHIPPED = "sloshing/drop", "sloshing/impact", "sloshing/roll-damper"
+SHIPPED += "validation/standing-wave", "validation/wave-flume", "validation/flap-flume"
+
+
+def test_shipped_records_keep_their_motion_within_their_digits():
+    tried = {name: record for name in SHIPPED for record in records(load(name).resolved)}
+    assert len(tried) == 6
+    for record in tried.values():
+        length, angle = in_si(record.length_unit, "", "m"), in_si(record.angle_unit, "", "rad")
+        for motion in record.history.motions.values():
+            name, unit = {"turn": ("roll", angle), "y": ("sway", length), "z": ("heave", length)}[motion.coordinate]
+            raw = np.array(record.file.columns[name])
+            away = np.abs(np.array(motion.values) / unit - raw)
+            assert (away <= 0.5001 * last_digits(raw) + 1e-15 * np.abs(raw).max()).all()
+
+
+@pytest.mark.parametrize(
+    ("columns", "form", "time", "key", "unit"),
+    [
+        ({"sway": 1e3 * MOVED}, "%.2f,%.2f", LOGGED, "length_unit", "mm"),
+        ({"heave": 1e3 * MOVED}, "%.2f,%.2f", LOGGED, "length_unit", "mm"),
+        ({"roll": 200.0 * MOVED}, "%.2f,%.2f", LOGGED, "angle_unit", "deg"),
+        ({"sway": MOVED}, "%.0f,%.4f", 1e3 * LOGGED, "time_unit", "ms"),
+        ({"sway": MOVED}, "%.0f,%.4f", 1e3 * LOGGED[::2], "time_unit", "ms"),
+    ],
+)
+def test_a_record_in_other_units_is_asked_about(preset, tmp_path, columns, form, time, key, unit):
+    name, values = next(iter(columns.items()))
+    values = values[:: len(values) // len(time)][: len(time)]
+    printed(tmp_path, form, time=time, **{name: values})
+    sentence = untold(preset)
+    assert sentence.startswith(f"motion.history.{key}: ") and f'{key} = "{unit}"' in sentence
+    motion = load(preset, logged(**{key: unit})).resolved.motion.parts[f"history.{name}"]
+    factor = {"mm": 1e-3, "deg": np.radians(1.0), "ms": 1.0}[unit]
+    assert np.abs(np.array(motion.values) - factor * values).max() <= 0.011 * factor
+    assert motion.duration() == pytest.approx(8.0)
+
+
+def test_a_unit_that_is_said_is_believed(preset, tmp_path):
+    printed(tmp_path, "%.2f,%.2f", roll=200.0 * MOVED)
+    assert "history.roll" in load(preset, logged(angle_unit="rad")).resolved.motion.parts
+    printed(tmp_path, "%.0f,%.4f", time=1e3 * LOGGED, sway=MOVED)
+    assert load(preset, logged(time_unit="s")).resolved.duration == pytest.approx(8000.0)
+
+
+def test_accelerations_that_no_tank_has_are_refused(preset, tmp_path):
+    """Noise of 1 mm in 10 ms, to many digits, makes some 6 · 1 mm/(10 ms)² = 60 m/s²; of 30 mm more than 100 g."""
+    noise = np.random.default_rng(1).standard_normal(len(LOGGED)) * np.minimum(1.0, LOGGED) ** 2
+    printed(tmp_path, "%.2f,%.9f", sway=MOVED + 1e-3 * noise)
+    assert load(preset, logged(length_unit="m")).resolved.motion.parts["history.sway"].hardest() < 400.0
+    printed(tmp_path, "%.2f,%.9f", heave=MOVED + 0.03 * noise)
+    sentence = error_of(load, preset, logged(length_unit="m"))
+    assert "heave has accelerations of" in sentence and "length_unit and time_unit" in sentence
+
+
+def test_the_name_of_a_file_stands_for_the_table(preset, tmp_path):
+    printed(tmp_path, sway=MOVED)
+    (tmp_path / "short.toml").write_text(TANK + '[motion]\nhistory = "record.csv"\n')
+    (tmp_path / "long.toml").write_text(TANK + '[motion.history]\nfile = "record.csv"\n')
+    short = load(tmp_path / "short.toml").resolved
+    assert short.motion == load(tmp_path / "long.toml").resolved.motion
+    assert list(short.motion.parts) == ["history.sway"]
 
 
 def test_too_many_samples_are_refused(preset, tmp_path):
