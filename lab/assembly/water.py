@@ -16,7 +16,7 @@ from solvers.fluid.start.flow import compressed, stirred, torsion, vortex_pressu
 from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share
 from solvers.fluid.start.plates import is_slanted
-from solvers.fluid.start.rest import at_rest, hydrostatic_excess
+from solvers.fluid.start.rest import at_rest, hydrostatic_excess, uncompressed
 from solvers.fluid.start.support import depths
 from solvers.fluid.timestep import steps_of_water
 from solvers.scene import Scene
@@ -29,11 +29,18 @@ VELOCITY = [VELOCITY_Y, VELOCITY_Z]
 
 
 def water_of(preset: Preset) -> dict:
-    """What a scene says of the water, by its fields; it is the same in all repeats. Raises LabError."""
+    """What a scene says of the water, by its fields; it is the same in all repeats. Raises LabError.
+
+    Its density is that without pressure (`uncompressed`): the preset's is that of the water as it starts, in the mean.
+    """
     drops = {pool.number: drops_of(preset, pool) for pool in pools(preset)}
     fills = tuple(len(drops.get(number, ())) for number in range(1 + len(preset.tanks)))
-    water = replace(liquid(preset), fills=fills if len(fills) > 1 else ())
-    return {"water": water, "drops": np.tile(np.concatenate([*drops.values()]), (preset.run.repeats, 1, 1))}
+    water, all_drops = replace(liquid(preset), fills=fills if len(fills) > 1 else ()), np.concatenate([*drops.values()])
+    if water.model == "sph":  # else particles are not compressed
+        share = np.concatenate([np.full(len(of_tank), _along(preset, number)) for number, of_tank in drops.items()])
+        wet = _wet(all_drops[None])
+        water = replace(water, density=uncompressed(all_drops[:wet], water.density, share[:wet]))
+    return {"water": water, "drops": np.tile(all_drops, (preset.run.repeats, 1, 1))}
 
 
 def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
@@ -104,13 +111,18 @@ def water_aboard(preset: Preset) -> Body:
     """The water in a ship's tanks as if it were frozen, per metre of her length, in the hull's axes."""
     bodies = []
     for pool in pools(preset) if preset.water and preset.ship else ():
-        tank = [preset.tank, *preset.tanks.values()][pool.number]
-        share = tank.length / preset.ship.length if tank.length else 1.0
+        share = _along(preset, pool.number)
         area, centre, turning = moments(below(pool.polygon, pool.level))
         mass = share * preset.water.density * area
         place = np.add(centre, preset.ship.hold)
         bodies.append(Body(mass, (float(place[0]), float(place[1])), mass * turning / area))
     return bolted(*bodies)
+
+
+def _along(preset: Preset, number: int) -> float:
+    """Which share of a ship's length the tank of this number has; 1 where it is as long as she, and without a ship."""
+    tank = [preset.tank, *preset.tanks.values()][number]
+    return tank.length / preset.ship.length if preset.ship and tank.length else 1.0
 
 
 def most_drops(preset: Preset) -> int:

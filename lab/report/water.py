@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from lab.assembly.scene import build
+from lab.assembly.water import volumes_of
 from lab.base.errors import LabError
 from lab.measures.gauges import pressure_gauges
 from lab.measures.water_residual import residual
@@ -22,6 +23,8 @@ from solvers.fluid.viscosity import LAMINAR
 from solvers.scene import Scene
 
 COMPRESSED = 0.03  # of the density: more is said
+EVEN = 1e-6  # of the density: water within it is not compressed
+OFF = 0.005  # %: a tank's mass that is off by more is told
 SOFT = 1.5  # times: the air's softness from which it is told
 UNEXPLAINED = 0.05  # of the energy exchanged: more is said
 Rows = list[tuple[str, str]]
@@ -33,6 +36,7 @@ def described(preset: Preset, scene: Scene) -> Rows:
     rows = [
         ("water", f"{scene.particles} particles in each tank, {_size(preset, scene.water)}"),
         ("sound", _sound(preset, scene.water)),
+        *compression(preset, scene),
     ]
     if scene.water.air:
         rows.append(("air", _air(scene)))
@@ -45,6 +49,25 @@ def described(preset: Preset, scene: Scene) -> Rows:
         names = [f"{name} of {kind}" for kind, gauges in kinds for name in gauges]
         rows.append(("gauges", ", ".join(names)))
     return rows
+
+
+def compression(preset: Preset, scene: Scene) -> Rows:
+    """Between which densities the water starts, compressed by its own pressure; none where it is not compressed.
+
+    The mass of all tanks is exact; that of each is told where some are deeper.
+    """
+    count = volumes_of(scene.drops, scene.worlds).shape[1]
+    dense = scene.water.density * (1.0 + scene.drops[0, :count, given.EXCESS])
+    if scene.water.model != "sph" or np.ptp(dense) < EVEN * scene.water.density:
+        return []
+    low, high, mean = (show(float(one), "kg/m^3") for one in (dense.min(), dense.max(), preset.water.density))
+    text = f"{low} to {high} as it starts, by its own pressure; {mean} in the mean: level and mass are exact"
+    of_tanks = np.split(dense, np.cumsum(scene.fills)[:-1]) if len(scene.fills) > 1 else []
+    off = [100.0 * (of_tank.mean() / preset.water.density - 1.0) if len(of_tank) else 0.0 for of_tank in of_tanks]
+    if np.abs(off).max(initial=0.0) >= OFF:
+        told = (f"{name} {more:+.2f} %" for name, more in zip(["tank", *preset.tanks], off, strict=True))
+        text += f" in all; the tanks' masses are off by {', '.join(told)}"
+    return [("density", text)]
 
 
 def _flow(preset: Preset) -> str:
@@ -168,7 +191,7 @@ def cautions(recording: Recording) -> Iterator[str]:
 
 
 def _size(preset: Preset, water: given.Water) -> str:
-    return f"{show(water.spacing, 'm')} apart, {show(depth(preset), 'm')} deep, {show(water.density, 'kg/m^3')}"
+    return f"{show(water.spacing, 'm')} apart, {show(depth(preset), 'm')} deep, {show(preset.water.density, 'kg/m^3')}"
 
 
 def _sound(preset: Preset, water: given.Water) -> str:

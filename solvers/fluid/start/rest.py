@@ -55,7 +55,8 @@ def at_rest(
     Beside `parts` in a tank with this `outline` (m, 2) m they are packed, see `packed_beside`.
 
     Each has the volume that it takes, so that its mass ρ0 (1 + s) V is that of the compressed water: with equal masses
-    the level would sink by g H²/(2 c0²). Raises ValueError if no particle fits in.
+    the level would sink by g H²/(2 c0²). With ρ0 as of `uncompressed` level and mass are both those of incompressible
+    water. Raises ValueError if no particle fits in.
     """
     if parts:
         packing = packed_beside(polygon, level, water, parts, outline)
@@ -68,3 +69,14 @@ def at_rest(
     drops[:, EXCESS] = hydrostatic_excess(level - points[:, 1], weight, water.sound_speed, water.state)
     drops[:, VOLUME] = volume
     return drops
+
+
+def uncompressed(drops: np.ndarray, density: float, share: np.ndarray | float = 1.0) -> float:
+    """ρ0 (kg/m³) without pressure of water whose particles (n, 6) have a mean `density` (kg/m³) over their area.
+
+    ρ0 = ρ Σ V/Σ (1 + s) V, so that Σ ρ0 (1 + s) V = ρ Σ V: some g H/(2 c0²) less than ρ, half a per cent where c0² =
+    100 g H. The motion of water alone under prescribed motions of its tank does not depend on ρ0, all forces are
+    proportional to it. `share` (n,) is how much of each counts, as where tanks are of different length.
+    """
+    volume = share * drops[:, VOLUME]
+    return float(density * volume.sum() / ((1.0 + drops[:, EXCESS]) * volume).sum())
