@@ -83,7 +83,7 @@ class WaterMatter(Matter):
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
-        self.edges = Edges(arrays, medium, self.extrapolation, water.edges, behind, dummy, scene.tanks, pool.first)
+        self.edges = Edges(arrays, medium, self.extrapolation, behind, dummy, scene.tanks, pool.first, water)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness

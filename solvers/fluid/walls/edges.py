@@ -1,13 +1,15 @@
 """Forces of the water on single edges of the tank, summed over the dummies behind them."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.given import Water
 from solvers.fluid.lists import Medium
 from solvers.fluid.state import DRY
-from solvers.fluid.walls.behind import OF_NONE, Behind
+from solvers.fluid.walls.behind import OF_NONE, Behind, covered
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.layers import SHARP, edge_of
 from solvers.machine.state import Axis, State
@@ -15,18 +17,24 @@ from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
 from solvers.tank.tank import Tank
 
+FINE = 8  # points over a smoothing length, by which integrals over faces and over water are taken
+TABLE = 33  # depths at which what a plane face shows is known
+ZONE = 0.75  # smoothing lengths from a corner within which dummies bear what few others lack
+MOST = 3.0  # times as much more they may bear: behind a thin fin hardly any stand
+FEW = 1e-3  # of a kernel: dummies at a corner that see less have no weight to part
+
 
 @ti.data_oriented
 class Edges:
     """The force (y, z; N) on each edge in each world, as mean since it was last taken.
 
     A dummy bears minus what it does to the water (`Forces`), the drag of water that sticks excepted, and belongs to the
-    nearest edge. Near a corner it bears the pressure on two faces, and gives part of it to the other edge (`corner`).
-    Together the edges bear the load on the tank; each without the pressure of the background.
+    nearest edge. Near a corner it bears the pressure on two faces, and gives part of it to the other edge (`parting`).
+    Together the edges bear the load on the tank; each without the pressure of the background. Along a face they bear
+    what makes the load of all exact: it is no friction.
 
-    Limits: beside a corner that points into the water an edge lacks 0.25 to 0.35 Δx of the pressure there, since too
-    few dummies stand behind it. Where the outline turns by less than SHARP, or more than 180 deg less that, each dummy
-    gives all to its nearest edge.
+    Limits: where the outline turns by less than SHARP, or more than 180 deg less that, each dummy gives all to its
+    nearest edge. Where water at a corner does not move with the tank, parts of second order, ρ a h², are not parted.
     """
 
     def __init__(
@@ -34,28 +42,31 @@ class Edges:
         arrays: State,
         medium: Medium,
         walls: Extrapolation,
-        edges: tuple[int, ...],
         behind: Behind,
         slots: np.ndarray,
         tanks: Sequence[Tank],
         number: int,
+        water: Water,
     ):
         """The `edges` of one of the `tanks`; `slots` are where the points of `behind` are among the walls."""
         tank = tanks[number]
         self.particles, self.lists, self.constants = medium.particles, medium.lists, medium.constants
         self.units, self.shares, self.walls = medium.units, medium.shares, walls
-        self.wanted, self.thickness, p = list(edges), tank.thickness, medium.particles
-        if edges:
+        self.wanted, self.thickness, p = list(water.edges), tank.thickness, medium.particles
+        if water.edges:
             own = arrays.under("edges")
             each = Axis("block", p.worlds * p.stride), Axis("lane", p.lanes)
             self.force = own.wide(each, *named("force", p.axes), kept=False)
+            self.weight = own.wide(each, *named("weight", p.axes), kept=False)
             size, here = p.dry * p.lanes, (behind.tanks == number) & (behind.edges != OF_NONE)
-            owner, other, shares = np.full(size, OF_NONE), np.full(size, OF_NONE), np.zeros((size, 2, 2))
-            at, reach = slots[here], medium.lists.bodies.reach
-            owner[at], (other[at], shares[at]) = behind.edges[here], corner(behind.points[here], tank, reach)
+            owner, other = np.full(size, OF_NONE), np.full(size, OF_NONE)
+            given, at = np.zeros((size, 2, 4)), slots[here]
+            parted = parting(behind.points[here], behind.volumes[here], tank, water, water.edges)
+            owner[at], other[at] = behind.edges[here], parted.other
+            given[at] = np.concatenate([parted.of_force, parted.of_weight], axis=2)
             self.owner = own.holding("owner", owner, "slot", ti.i32)
             self.other = own.holding("other", other, "slot", ti.i32)
-            self.given = own.holding("given", shares, "slot axis of", own.exact)
+            self.given = own.holding("given", given, "slot axis of", own.exact)
             worlds = Axis("world", p.worlds)
             count = Axis("edge", int(owner.max(initial=0)) + 1)
             self.impulse = own.reals((worlds, count), *named("impulse", p.axes), kind=own.exact)
@@ -81,11 +92,8 @@ class Edges:
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         pressure, volume, firm = p.load(p.pressure, b), p.load(p.volume, b), p.load(p.firm, b)
-        force, felt = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
-        if ti.static(c.two):
-            found = self.walls.felt(self.units.world(u), b)
-            for a in ti.static(range(p.axes)):
-                felt[a] += found[a]
+        force = [p.zeros() for _ in ti.static(range(p.axes))]
+        felt = self.walls.felt(self.units.world(u), b)
         for k in range(begin, end):
             j = lists.facing.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -112,6 +120,16 @@ class Edges:
                     force[a] += by_wall * p.load(self.walls.lean.lean[a], b)
         for a in ti.static(range(p.axes)):
             p.store(self.force[a], b, (volume * c.get("slope")) * force[a])
+            p.store(self.weight[a], b, self.seen(b, volume) * felt[a])
+
+    @ti.func
+    def seen(self, b, volume):
+        """The mass (kg/m) of what a block of dummies sees, V_w Σ ρ_f V_f W."""
+        p, c = self.particles, self.constants
+        density = c.get("density") * p.ones()
+        if ti.static(c.two):
+            density += (1.0 - p.load(p.share, b)) * (c.get("air_density") - c.get("density"))
+        return density * volume * p.load(p.span, b)
 
     @ti.func
     def add(self, w, t, kick, dt):
@@ -121,12 +139,15 @@ class Edges:
             edge = self.owner[slot]
             if edge != OF_NONE:
                 b, other = w * p.stride + p.wet + slot // p.lanes, self.other[slot]
-                push = [ti.cast(self.force[a][b, slot % p.lanes], p.exact) * during for a in ti.static(range(p.axes))]
+                lane = slot % p.lanes
+                push = [ti.cast(self.force[a][b, lane], p.exact) * during for a in ti.static(range(p.axes))]
+                weight = [ti.cast(self.weight[a][b, lane], p.exact) * during for a in ti.static(range(p.axes))]
                 for a in ti.static(range(p.axes)):
                     self.impulse[a][w, edge] = self.impulse[a][w, edge] + push[a]
                 if other != OF_NONE:
                     for a in ti.static(range(p.axes)):
                         given = dot([self.given[slot, a, n] for n in ti.static(range(p.axes))], push)
+                        given += dot([self.given[slot, a, p.axes + n] for n in ti.static(range(p.axes))], weight)
                         self.impulse[a][w, edge] = self.impulse[a][w, edge] - given
                         self.impulse[a][w, other] = self.impulse[a][w, other] + given
         self.elapsed[w] = self.elapsed[w] + during
@@ -142,41 +163,133 @@ class Edges:
         return {"edge_force": self.thickness * impulse / np.where(elapsed > 0.0, elapsed, 1.0)[:, None, None]}
 
 
-def corner(points: np.ndarray, tank: Tank, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """To which other edge (n,) dummies at `points` (n, 2) m behind a tank's wall give, and shares (n, 2, 2) of a force.
+@dataclass(frozen=True, eq=False)
+class Parting:
+    """To which `other` edge (n,) dummies near corners give, and what: `of_force` (n, 2, 2) of the force F on them, and
+    `of_weight` (n, 2, 2) of the weight q = ρ V_w γ_w (g − a) of the water that they see, γ_w = Σ V_f W_fw."""
 
-    Under a pressure p that is everywhere the same, water pushes a dummy by F = A_1 n_1 + A_2 n_2, A_k = 2 p V ∫ W dS
-    over the face k and n_k its outward normal (by the divergence theorem). Summed over the dummies behind the line of a
-    face, A_k is p times its length, since half of each kernel is there. So of a dummy that is behind the lines of both
-    faces each edge gets its part along its normal. Of one that is behind one line alone, the other face's part
-    counts for neither: it is parted into vectors along both faces, square to what each bears as pressure. A_1 and A_2
-    follow from F wherever n_1 and n_2 differ in direction. Own derivation. The parts of both make up F.
+    other: np.ndarray
+    of_force: np.ndarray
+    of_weight: np.ndarray
+
+
+def parting(points: np.ndarray, volumes: np.ndarray, tank: Tank, water: Water, edges: Sequence[int]) -> Parting:
+    """What dummies at `points` (n, 2) m, of `volumes` (n,) m², give to another edge at the corners of some `edges`.
+
+    Where ∇p = ρ (g − a), as in water at rest, water pushes a dummy by
+
+        F = A_1 n_1 + A_2 n_2 − q,  A_k = V_w ∫ (p + p_w) W dS
+
+    over the face k, n_k its outward normal (by the divergence theorem). A_1 and A_2 follow from F + q wherever n_1 and
+    n_2 differ in direction. Over all dummies behind the line of a straight face, A_k makes up ∫ p dS and (n_k·q), since
+    half of each kernel is there, and half of it the more squeezed. So an edge bears, of each dummy behind its line,
+
+        N_k = b_w A_k − c_w n_k·q,
+
+    b_w = 1 but where few dummies are behind a line, as at a corner that points into the water: there they bear as much
+    more as the line lacks (`_more`). c_w = γ(d)/γ_w for dummies before whose foot there is a face, with γ(d) of a plane
+    face at their depth d, and 0 beyond its end. What is left of F is parted into vectors along both faces, square to
+    what each bears as pressure. So the parts of both make up F. Own derivation.
     """
-    outline = tank.outline
-    ways = np.roll(outline, -1, axis=0) - outline
-    lengths, count = np.linalg.norm(ways, axis=1), len(outline)
-    along = ways / lengths[:, None]
-    normal = np.stack([along[:, 1], -along[:, 0]], axis=1)
-    other, shares = np.full(len(points), OF_NONE), np.zeros((len(points), 2, 2))
-    for k, (apart, own) in enumerate(zip(points[:, None] - outline, edge_of(points, outline), strict=True)):
-        off = np.clip((apart * along).sum(axis=1), 0.0, lengths)[:, None] * along - apart
-        next_one = (own + 1) % count
-        at_end = np.hypot(*apart[next_one]) < np.hypot(*apart[own])
-        near = next_one if at_end else (own - 1) % count
-        sine = abs(along[own] @ normal[near])
-        if sine < np.sin(SHARP) or near in tank.open_edges or np.hypot(*off[near]) > reach:
+    outline, (_, along, normal) = tank.outline, _frame(tank.outline)
+    own, count = edge_of(points, outline), len(outline)
+    other = _beside(points, own, tank, water.reach)
+    found = Parting(other, np.zeros((len(points), 2, 2)), np.zeros((len(points), 2, 2)))
+    for second in {(edge + end) % count for edge in edges for end in (0, 1)}:
+        pair = np.array([(second - 1) % count, second])
+        at = np.flatnonzero(((own == pair[0]) & (other == pair[1])) | ((own == pair[1]) & (other == pair[0])))
+        if not len(at):
             continue
-        other[k], shares[k] = near, _given(along[[own, near]], normal[[own, near]], apart[[own, near]])
-    return other, shares
+        ways = along[pair] * np.array([[-1.0], [1.0]])  # away from the corner
+        off = points - outline[second]
+        foot, depth = off @ ways.T, off @ normal[pair].T
+        behind = depth > 0.0
+        bears = behind[at] * (1.0 + np.stack([_more(foot, depth, volumes, k, water) for k in (0, 1)], axis=1)[at])
+        sees = _sees(off[at], tank, outline[second], water)
+        weighs = (behind & (foot > 0.0))[at] * _plane(depth[at], water) / np.maximum(sees, FEW)[:, None]
+        found.of_force[at], found.of_weight[at] = _given(
+            along[pair], normal[pair], bears, weighs, np.equal(own[at], pair[1]).astype(int)
+        )
+    return found
 
 
-def _given(along: np.ndarray, normal: np.ndarray, apart: np.ndarray) -> np.ndarray:
-    """The matrix (2, 2) by which a dummy's force gives the second of two edges its part, see `corner`.
+def _frame(outline: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Lengths (m,) m of the edges of a polygon, unit vectors (m, 2) along them, and their outward normals."""
+    ways = np.roll(outline, -1, axis=0) - outline
+    lengths = np.linalg.norm(ways, axis=1)
+    along = ways / lengths[:, None]
+    return lengths, along, np.stack([along[:, 1], -along[:, 0]], axis=1)
 
-    Of both, rows (2, 2): unit vectors along and outwards, and how far (m) the dummy is from a corner of each.
+
+def _beside(points: np.ndarray, own: np.ndarray, tank: Tank, reach: float) -> np.ndarray:
+    """The other edge (n,) that points see behind a corner near them, whose `own` edges (n,) these are; or OF_NONE."""
+    outline, (lengths, along, normal) = tank.outline, _frame(tank.outline)
+    other, count = np.full(len(points), OF_NONE), len(outline)
+    for k, (apart, mine) in enumerate(zip(points[:, None] - outline, own, strict=True)):
+        off = np.clip((apart * along).sum(axis=1), 0.0, lengths)[:, None] * along - apart
+        after = (mine + 1) % count
+        near = after if np.hypot(*apart[after]) < np.hypot(*apart[mine]) else (mine - 1) % count
+        turns = abs(along[mine] @ normal[near]) >= np.sin(SHARP)
+        if turns and near not in tank.open_edges and np.hypot(*off[near]) <= reach:
+            other[k] = near
+    return other
+
+
+def _given(
+    along: np.ndarray, normal: np.ndarray, bears: np.ndarray, weighs: np.ndarray, own: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Of dummies at a corner of two edges the matrices (n, 2, 2) of a `Parting`; `own` (n,) is 0 or 1, their edge.
+
+    Of both edges unit vectors along and outwards (2, 2), and b_w and c_w of each dummy (n, 2), 0 where it is not behind
+    the edge's line.
     """
-    to_parts = np.linalg.inv(normal.T)  # rows: from the force, A_1 and A_2
-    own, other = (apart * normal).sum(axis=1) > 0.0
-    slope = along[1] / (along[1] @ normal[0])
-    given = np.outer(normal[1] if other else (normal[0] @ normal[1]) * slope, to_parts[1])
-    return given if own else given + np.outer(slope, to_parts[0])
+    by_force = bears[..., None] * np.linalg.inv(normal.T)  # N_k of F, and of q
+    by_weight = by_force - weighs[..., None] * normal
+    each, other = np.arange(len(own)), 1 - own
+    slope = along[other] / (along[other] * normal[own]).sum(axis=1)[:, None]
+    turned = (normal[0] @ normal[1]) * slope
+    given = []
+    for part, whole in ((by_force, normal[own]), (by_weight, np.zeros((len(own), 2)))):
+        left = whole - part[each, own]
+        given.append(
+            (normal[other] - turned)[..., None] * part[each, other][:, None] + slope[..., None] * left[:, None]
+        )
+    return given[0], given[1]
+
+
+def _more(foot: np.ndarray, depth: np.ndarray, volumes: np.ndarray, k: int, water: Water) -> np.ndarray:
+    """b_w − 1 (n,): by how much more dummies within ZONE of the end of an edge bear, to make up for what it lacks.
+
+    Points of a face see half of a kernel in an unbounded wall. `foot` and `depth` (n, 2) m of dummies are along both
+    edges from the corner, and behind their lines; k is the edge.
+    """
+    step = water.length / FINE
+    ways = (np.arange(round(water.reach / step)) + 0.5) * step
+    seen, zone = depth[:, k] > 0.0, (depth[:, k] > 0.0) & (foot[:, k] > 0.0) & (foot[:, k] < ZONE * water.length)
+    face = np.stack([ways, 0.0 * ways], axis=1)
+    placed = np.stack([foot[:, k], depth[:, k]], axis=1)
+    lack = (0.5 - covered(face, placed[seen], volumes[seen], water)).sum()
+    has = covered(face, placed[zone], volumes[zone], water).sum()
+    return zone * min(lack / has, MOST) if has > 0.0 else 0.0 * foot[:, k]
+
+
+def _sees(off: np.ndarray, tank: Tank, corner: np.ndarray, water: Water) -> np.ndarray:
+    """γ_w (n,) of dummies `off` (n, 2) m a corner of a tank that is full of water."""
+    lattice = _lattice(water, 2.0 * water.reach)
+    return covered(off, lattice, np.where(tank.holds(lattice + corner), (water.length / FINE) ** 2, 0.0), water)
+
+
+def _plane(depth: np.ndarray, water: Water) -> np.ndarray:
+    """γ (of any shape) of dummies at depths (m) behind a plane face; of others, 0."""
+    lattice = _lattice(water, water.reach)
+    wet = lattice[lattice[:, 1] > 0.0]
+    known = np.linspace(0.0, water.reach, TABLE)
+    share = covered(np.stack([0.0 * known, -known], axis=1), wet, np.full(len(wet), (water.length / FINE) ** 2), water)
+    return np.interp(depth, known, share, right=0.0)
+
+
+def _lattice(water: Water, half: float) -> np.ndarray:
+    """Points (n, 2) m of a square lattice so far (m) to all sides, FINE of them over a smoothing length."""
+    step = water.length / FINE
+    line = (np.arange(-round(half / step), round(half / step)) + 0.5) * step
+    return np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
