@@ -46,12 +46,12 @@ class Loaded:
 
     @cached_property
     def level(self) -> np.ndarray:
-        """Heights (n,) m of the water above the keel at the stations, upright."""
+        """Heights z (n,) m of the water at the stations, upright."""
         return self.form.floating(self.weights.mass, self.water, lcg=self.weights.lcg)
 
     @property
     def draughts(self) -> tuple[float, float, float]:
-        """Draughts (m) at the aft and the forward perpendicular, and their mean."""
+        """Draughts (m) from the base line at the aft and the forward perpendicular, and their mean."""
         aft, fore = self.form.draughts(self.level)
         return aft, fore, 0.5 * (aft + fore)
 
@@ -119,7 +119,7 @@ class Loaded:
             length,
             upright.breadth,
             draught,
-            self.weights.fluid_vcg,
+            self.weights.fluid_vcg - self.form.base,
             self.weights.mass,
             min(1.0, upright.volume / (length * upright.breadth * draught)),
             self.metacentric_height,

@@ -71,7 +71,7 @@ class Immersible:
     def immersion(self, heave, roll, elevation=0.0, slope=0.0) -> Immersion:
         """The part below the surface `elevation` (m) + `slope` (∂ζ/∂y) × y, at poses that broadcast together."""
         y, depth, elevation, slope = self._below(heave, roll, elevation, slope)
-        y0, d0, y1, d1 = _clipped(y, depth)
+        y0, d0, y1, d1 = clipped(y, depth)
         along = self._chain[1] * (y1 - y0)
         area = 0.5 * along * (d0 + d1)
         moment = along / 6.0 * (y0 * (2.0 * d0 + d1) + y1 * (d0 + 2.0 * d1))
@@ -81,7 +81,7 @@ class Immersible:
     def waterplane(self, heave, roll, elevation=0.0, slope=0.0) -> Waterplane:
         """Breadth and moments of the waterline, at poses that broadcast together."""
         y, depth, _, _ = self._below(heave, roll, elevation, slope)
-        crossing, sign = _crossings(y, depth)
+        crossing, sign = crossings(y, depth)
         powers = [(self._chain[1] * sign * crossing**n / n).sum(-1) for n in (1, 2, 3)]
         return Waterplane(*powers)
 
@@ -121,13 +121,19 @@ class Section(Immersible):
         """Its outline, all along."""
         return [(self.outline, 1.0)]
 
+    @cached_property
+    def top(self) -> float:
+        """Breadth (m) of its uppermost twentieth: a deck's, also one with camber, or little."""
+        y, z = self.outline.T
+        return float(np.ptp(y[z >= z.max() - 0.05 * np.ptp(z)]))
+
     def waterlines(self, heave: float, roll: float, elevation: float = 0.0, slope: float = 0.0) -> np.ndarray:
         """Ends (k, 2, 2) m of the waterline's k pieces at one pose, from port to starboard, in the earth's axes.
 
         Each end is y from the hull's origin and z.
         """
         y, depth, _, _ = self._below(heave, roll, elevation, slope)
-        crossing, sign = _crossings(y, depth)
+        crossing, sign = crossings(y, depth)
         ends = np.sort(crossing[sign != 0.0]).reshape(-1, 2)
         ends = ends[np.ptp(ends, axis=1) > ROUNDING * self.size]
         return np.stack([ends, elevation + slope * ends], axis=-1)
@@ -135,7 +141,7 @@ class Section(Immersible):
     def wet_edges(self, heave: float, roll: float) -> np.ndarray:
         """Start and end (k, 2, 2) m of each edge's part below calm water, the water to its right, earth's axes."""
         y, depth, _, _ = self._below(heave, roll, 0.0, 0.0)
-        y0, d0, y1, d1 = _clipped(y, depth)
+        y0, d0, y1, d1 = clipped(y, depth)
         wet = np.hypot(y1 - y0, d1 - d0) > ROUNDING * self.size
         return np.stack([np.stack([y0, -d0], axis=-1), np.stack([y1, -d1], axis=-1)], axis=1)[wet]
 
@@ -162,7 +168,7 @@ def box(width: float, height: float) -> Section:
     return Section(np.array([[-half, 0.0], [half, 0.0], [half, height], [-half, height]]))
 
 
-def _clipped(y: np.ndarray, depth: np.ndarray):
+def clipped(y: np.ndarray, depth: np.ndarray):
     """Start y, depth and end y, depth (…, m) of the edges' immersed parts; dry edges have zero length."""
     y0, d0, y1, d1 = y[..., :-1], depth[..., :-1], y[..., 1:], depth[..., 1:]
     crossing = _crossing(y0, d0, y1, d1)
@@ -179,7 +185,7 @@ def _crossing(y0, d0, y1, d1) -> np.ndarray:
     return y0 + share * (y1 - y0)
 
 
-def _crossings(y: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def crossings(y: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The y (…, m) at which each edge leaves (sign 1) or enters (−1) the water; sign 0 if it does neither."""
     y0, d0, y1, d1 = y[..., :-1], depth[..., :-1], y[..., 1:], depth[..., 1:]
     sign = (d0 > 0.0).astype(float) - (d1 > 0.0)

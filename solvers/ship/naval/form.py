@@ -1,8 +1,9 @@
 """A whole hull by its stations: displacement, hydrostatics and righting levers in calm water.
 
-Each station is a section (`solvers.ship.section`), cut at x (m) forward from the aft perpendicular; z is from the keel.
-Along the ship Simpson's rule is used, in its form for unequal distances. A ship that is known by one section alone is a
-prism of three equal stations, for which the rule is exact.
+Each station is a section (`solvers.ship.section`), cut at x (m) forward; z is up. Heights are those of the stations'
+own axes, and draughts are from the base line, which is at z = 0 unless the form says otherwise. Along the ship
+Simpson's rule is used, in its form for unequal distances. A ship that is known by one section alone is a prism of three
+equal stations, for which the rule is exact.
 """
 
 from collections.abc import Sequence
@@ -12,11 +13,13 @@ from functools import cached_property
 import numpy as np
 
 from solvers.machine.errors import Unavailable
+from solvers.ship.naval.outlines import Outlines
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 
 TONNE = 1000.0  # kg
 CENTIMETRES = 100.0  # in a metre
+DECK = 0.1  # of the greatest breadth: a station's top that is less wide is no deck
 MOST_STEPS = 25  # of Newton's method for draught and trim
 
 
@@ -24,8 +27,8 @@ MOST_STEPS = 25  # of Newton's method for draught and trim
 class Hydrostatics:
     """Hydrostatic particulars at a draught, upright: lengths in m, displacement in t, TPC in t/cm, MCT in t m/cm.
 
-    lcb and lcf are as the stations' x, kb, km and kml above the keel. MCT and the coefficients have the length between
-    perpendiculars, and the breadth of this waterline; `length` is the waterline's.
+    lcb and lcf are as the stations' x, kb, km and kml as their z, the draught is from the base line. MCT and the
+    coefficients have the length between perpendiculars, and the breadth of this waterline; `length` is the waterline's.
     """
 
     draught: float
@@ -54,13 +57,14 @@ class Form:
     """Stations x (n,) m that rise, and a section at each, None where the hull has shrunk to a point or a line.
 
     `length` (m) is that between perpendiculars, from the aft one at x = `aft` (m); without a length both are at the
-    outermost stations.
+    outermost stations. `base` (m) is the height z of the base line.
     """
 
     x: np.ndarray
     sections: Sequence[Section | None]
     length: float | None = None
     aft: float = 0.0
+    base: float = 0.0
 
     def __post_init__(self):
         x = np.asarray(self.x, dtype=float)
@@ -86,7 +90,7 @@ class Form:
     def draughts(self, level: np.ndarray) -> tuple[float, float]:
         """Draughts (m) at the aft and the forward perpendicular of water `level` (n,) m high at the stations."""
         slope = (level[-1] - level[0]) / (self.x[-1] - self.x[0])
-        aft, fore = (float(level[0] + slope * (end - self.x[0])) for end in self.ends)
+        aft, fore = (float(level[0] - self.base + slope * (end - self.x[0])) for end in self.ends)
         return aft, fore
 
     @cached_property
@@ -98,18 +102,28 @@ class Form:
 
     @cached_property
     def depth(self) -> float:
-        """Height (m) of the lowest top of all stations above the keel: up to it the stations are closed."""
-        return min(float(section.outline[:, 1].max()) for section in self.sections if section is not None)
+        """Height (m) of her deck above the base line, where it is lowest: up to it water does not come over her.
+
+        Stations with a narrow top do not count: a bulb before the stem and a rudder have no deck.
+        """
+        sections = [section for section in self.sections if section is not None]
+        widest = max(float(np.ptp(section.outline[:, 0])) for section in sections)
+        decked = [section for section in sections if section.top > DECK * widest] or sections
+        return min(float(section.outline[:, 1].max()) for section in decked) - self.base
 
     @cached_property
     def volume(self) -> float:
         """Volume (m³) of the whole hull."""
         return float(sum(w * s.area for w, s in zip(self.weights, self.sections, strict=True) if s is not None))
 
+    @cached_property
+    def _outlines(self) -> Outlines:
+        return Outlines(self.sections)
+
     def _along(self, level: np.ndarray, roll: float, plane: bool = False) -> np.ndarray:
         """Of each station (n, 3): area and moments of its immersed part, or breadth and moments of its waterline.
 
-        level (n,): height (m) of the water above the stations' origin; y and depth from there, in the earth's axes.
+        level (n,): height (m) of the water; y and depth in the earth's axes, from where the stations' origin is.
         """
         found = np.zeros((len(self.x), 3))
         for k, section in enumerate(self.sections):
@@ -138,7 +152,7 @@ class Form:
             raise Unavailable(
                 f"the draught of {draught:.4g} m must be above 0 and at most the {self.depth:.4g} m of the stations."
             )
-        return self.afloat(np.full(len(self.x), draught), water)
+        return self.afloat(np.full(len(self.x), self.base + draught), water)
 
     def afloat(self, level: np.ndarray, water: Water) -> Hydrostatics:
         """Particulars upright with water `level` (n,) m high at the stations: of a trimmed ship, her own waterplane.
@@ -178,7 +192,7 @@ class Form:
             length=length,
             breadth=breadth,
             block=volume / (between * breadth * draught),
-            midship=full / (breadth * float(level[fullest])),
+            midship=full / (breadth * float(level[fullest] - self.base)),
             prismatic=volume / (between * full),
             plane=surface / (between * breadth),
         )
@@ -199,7 +213,7 @@ class Form:
         return float(self.x[ends[1]] - self.x[ends[0]])
 
     def floating(self, displacement: float, water: Water, roll: float = 0.0, lcg: float | None = None) -> np.ndarray:
-        """Heights (n,) m of the water above the keel at the stations, in vertical balance with a displacement (t).
+        """Heights z (n,) m of the water at the stations, in vertical balance with a displacement (t).
 
         With `lcg` (m) she also trims freely until her buoyancy is under it; without it her keel stays level.
         Raises `Unavailable` for a weight that the hull cannot carry, or a centre of gravity beyond its buoyancy.
@@ -211,9 +225,7 @@ class Form:
                 f"the weight of {displacement:.5g} t does not float: it must be above 0 and below the {most:.5g} t "
                 "that the whole hull displaces."
             )
-        if lcg is None:
-            return self._level(needed, roll, 0.0)
-        return self._trimmed(needed, roll, lcg)
+        return self._level(needed, roll, 0.0) if lcg is None else self._trimmed(needed, roll, lcg)
 
     def _trimmed(self, needed: float, roll: float, lcg: float) -> np.ndarray:
         """Heights (n,) m of the water for a volume (m³) whose centre is `lcg` (m) forward.
@@ -227,7 +239,7 @@ class Form:
         level, arm = self._level(needed, roll, 0.0), x - 0.5 * (x[0] + x[-1])
         tolerance = 1e-12 * np.array([needed, needed * self.perpendiculars])
         for _ in range(MOST_STEPS):
-            areas, breadths = self._along(level, roll)[:, 0], self._along(level, roll, plane=True)[:, 0]
+            areas, breadths = self._outlines.wet(level, roll)
             off = np.array([self.weights @ areas - needed, self.weights @ (x * areas) - lcg * needed])
             if (np.abs(off) <= tolerance).all():
                 return level
@@ -250,14 +262,14 @@ class Form:
 
         tilt = slope * (self.x - 0.5 * (self.x[0] + self.x[-1]))
         size = max(section.size for section in self.sections if section is not None)
-        reach = 2.0 * size + float(np.abs(tilt).max())
-        surplus = lambda level: float(self.weights @ self._along(level + tilt, roll)[:, 0]) - needed  # noqa: E731
+        reach = max(2.0 * size, 1.5 * self._outlines.furthest) + float(np.abs(tilt).max())
+        surplus = lambda level: float(self.weights @ self._outlines.wet(level + tilt, roll)[0]) - needed  # noqa: E731
         return brentq(surplus, -reach, reach, xtol=1e-12 * size, rtol=1e-15) + tilt
 
     def cross_curves(
         self, displacement: float, water: Water, heels: np.ndarray, lcg: float | None = None
     ) -> np.ndarray:
-        """Levers KN (m) about the keel at heels (rad) to port: KN = GZ + KG sin φ with G amidships."""
+        """Levers KN (m) about y = z = 0 at heels (rad) to port: KN = GZ + KG sin φ with G amidships."""
         return np.array(
             [
                 -self.displaced(self.floating(displacement, water, h, lcg), h)[1][1]
