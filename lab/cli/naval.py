@@ -49,11 +49,21 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
     "--density", type=click.FloatRange(500, 2000), default=1025.0, show_default=True, help="Of the water, kg/m3."
 )
 @click.option(
-    "--stations", type=click.IntRange(3, 1001), default=41, show_default=True, help="Cuts of a surface, ends included."
+    "--stations", type=click.IntRange(3, 1001), default=41, show_default=True, help="Fewest cuts of a surface."
 )
 @click.option(
     "--scale", type=click.FloatRange(1e-4, 1e4), default=1.0, show_default=True, help="Metres in a surface's unit."
 )
+@click.option("--up", type=click.Choice(["y", "z"]), default="z", help="The axis that is up in a surface's file.")
+@click.option(
+    "--origin",
+    type=(float, float, float),
+    default=(0.0, 0.0, 0.0),
+    metavar="X Y Z",
+    help="Place in a surface's file that becomes the origin: m, z up.",
+)
+@click.option("--mirror", is_flag=True, help="A surface is half a hull: add the other side.")
+@click.option("--close", is_flag=True, help="Close a surface's flat holes, as a deck or a transom.")
 @click.option("--fair", is_flag=True, help="Fair curves between the offsets of a station, in place of straight lines.")
 @click.option(
     "--lbp", type=click.FloatRange(0, 1e3, min_open=True), metavar="M", help="Her length between perpendiculars, m."
@@ -76,7 +86,8 @@ def hull(file: Path, out: Path | None, **asked) -> None:
 
     FILE is a table of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
     station from the keel up), or a matrix of stations and waterlines, or a closed surface as STL (x forward, y to
-    starboard, z up). Masses are in t, fsm in
+    starboard, z up, y = 0 in her middle), whose axes are kept in all that is given and written; draughts are from her
+    keel amidships. Masses are in t, fsm in
     t m, stowage in m3/t, moments of grain in m4; filling is partly-filled, filled or filled-as-loaded; kind is opening
     or deck. With --weights she is judged by the IS Code, with --wind by its weather criterion, with --grain by the
     Grain Code, with --points up to the angle of downflooding.

@@ -11,13 +11,17 @@ from lab.base.files import write_text
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
-from lab.naval.lengths import between, perpendiculars
+from lab.naval.lengths import between
 from lab.naval.loaded import Loaded, Wind
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
-from lab.naval.surface import read_surface
+from lab.naval.surfaces.axes import Axes
+from lab.naval.surfaces.mesh import Mesh
+from lab.naval.surfaces.offsets import write_offsets
+from lab.naval.surfaces.read import read_surface
+from lab.naval.surfaces.selfcheck import self_check
 from lab.naval.weights import Weights, read_weights
-from lab.report.stability import SIGNS, aligned, save_axes
+from lab.report.stability import HEEL, SIGNS, aligned, save_axes
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.form import Form
 from solvers.ship.naval.holds import Hold
@@ -32,14 +36,18 @@ WITH_WEIGHTS = "points", "grain", "wind"
 class Asked:
     """What is asked of a hull: files of weights, points, grain and holds, wind (area m², lever m), a section's place.
 
-    The water's density is in kg/m³; `stations` and `scale` (metres in the file's unit) are of surfaces. `lbp` and `lwl`
-    are her lengths (m) between perpendiculars, from the aft one at x = `ap` (m), and in the waterline. With `fair` the
-    offsets of a station are joined by fair curves.
+    The water's density is in kg/m³; `stations` is the fewest cuts of a surface, and what follows is of surfaces, too
+    (`lab.naval.surfaces.axes`). `lbp` and `lwl` are her lengths (m) between perpendiculars, from the aft one at x =
+    `ap` (m), and in the waterline. With `fair` the offsets of a station are joined by fair curves.
     """
 
     density: float = 1025.0
     stations: int = 41
     scale: float = 1.0
+    up: str = "z"
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    mirror: bool = False
+    close: bool = False
     weights: Path | None = None
     points: Path | None = None
     grain: Path | None = None
@@ -54,13 +62,16 @@ class Asked:
     fair: bool = False
 
 
-def read_form(path: Path, asked: Asked) -> Form:
-    """The hull of a file, by its ending. Raises LabError."""
-    if path.suffix.lower() not in SURFACES:
-        return read_offsets(path, asked.fair)
-    if asked.fair:
-        raise LabError(f"{path.name}: --fair is of tables of offsets; a surface says what is between its points.")
-    return read_surface(path, asked.stations, asked.scale)
+def read_form(path: Path, asked: Asked) -> tuple[Form, Mesh | None]:
+    """The hull of a file, by its ending, and her surface if that is what it holds. Raises LabError."""
+    axes = Axes(asked.scale, asked.up, asked.origin, asked.mirror, asked.close)
+    if path.suffix.lower() in SURFACES:
+        if asked.fair:
+            raise LabError(f"{path.name}: --fair is of tables of offsets; a surface says what is between its points.")
+        return read_surface(path, asked.stations, axes)
+    if axes != Axes():
+        raise LabError(f"{path.name}: --scale, --up, --origin, --mirror and --close are for surfaces; leave them out.")
+    return read_offsets(path, asked.fair), None
 
 
 def between_offsets(path: Path, form: Form, fair: bool) -> str:
@@ -79,19 +90,17 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
     for name in WITH_WEIGHTS:
         if getattr(asked, name) and not asked.weights:
             raise LabError(f"--{name}: needs --weights, by which she floats; give both.")
-    water, of_surface = Water(asked.density), path.suffix.lower() in SURFACES
-    form = between(read_form(path, asked), asked.lbp, asked.lwl, asked.ap)
+    (form, mesh), water = read_form(path, asked), Water(asked.density)
+    form = between(form, asked.lbp, asked.lwl, asked.ap)
     try:
         written = {
             "hydrostatics": tables.hydrostatics(form, water, DEEPEST * form.depth),
             "cross-curves": tables.cross_curves(form, water, DEEPEST * form.depth),
         }
-        lines = [
-            f"{path.name}: {len(form.x)} stations over {np.ptp(form.x):.5g} m, depth {form.depth:.4g} m",
-            f"perpendiculars {perpendiculars(form)}",
-        ]
-        if not of_surface:
-            lines.append(between_offsets(path, form, asked.fair))
+        lines = [f"{path.name}: {len(form.x)} stations over {np.ptp(form.x):.5g} m, depth {form.depth:.4g} m"]
+        lines += self_check(form, mesh, asked.stations)
+        if mesh is None:
+            lines.append(f"  {between_offsets(path, form, asked.fair)}")
         holds = read_holds(asked.holds, form) if asked.holds else {}
         written |= {f"hold-{name}": tables.hold(hold) for name, hold in holds.items()}
         if asked.weights:
@@ -103,9 +112,11 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
     except Unavailable as error:
         raise LabError(f"{path.name}: {error}") from None
     tables.write(written, folder)
-    if of_surface or asked.fair or not is_plain(path):
+    if mesh is None and (asked.fair or not is_plain(path)):
         write_text(folder / "offsets.csv", text_of(list(rows_of(form))))
-    return "\n".join([*lines, "", SIGNS])
+    if mesh and (said := write_offsets(form, folder)):
+        lines += ["", said]
+    return "\n".join([*lines, "", SIGNS if mesh is None else f"{HEEL}; x, y and z are those of the file."])
 
 
 def _judged(form: Form, water: Water, asked: Asked, holds: dict[str, Hold], folder: Path, name: str):

@@ -16,7 +16,8 @@ from lab.report.page import save_figure
 from lab.report.plots import BELOW, STYLE, TITLE, canvas
 
 RENDERS = Path("renders/stability")
-SIGNS = "Heel is positive starboard down (the lab's own roll: positive port side down); z is from the keel."
+HEEL = "Heel is positive starboard down (the lab's own roll: positive port side down)"
+SIGNS = f"{HEEL}; z is from the keel."
 
 
 def judge(loaded: LoadedPreset, out: Path | None = None) -> tuple[str, Path]:

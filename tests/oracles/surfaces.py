@@ -52,6 +52,11 @@ def cylinder(corners: int) -> np.ndarray:
     return prism(np.column_stack([5.0 * np.cos(angle), 5.0 + 5.0 * np.sin(angle)]), np.linspace(0.0, 40.0, 21))
 
 
+def moved(triangles: np.ndarray, *way: float) -> np.ndarray:
+    """Triangles that are moved (m) along x, y and z."""
+    return triangles + np.array(way)
+
+
 def stl(path: Path, triangles: np.ndarray) -> Path:
     """A binary STL file."""
     body = b"".join(struct.pack("<12fH", 0, 0, 0, *map(float, t.ravel()), 0) for t in triangles)

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from lab.assembly.offsets import from_offsets, read_offsets
 from lab.cli.naval import hull
-from lab.naval.surface import read_surface
+from lab.naval.surfaces.read import read_surface
 from lab.naval.weights import read_weights
 from lab.report.hull import outline_at
 from solvers.machine.errors import Unavailable
@@ -106,13 +106,13 @@ def test_series_60_has_its_published_coefficients():
 
 
 def test_wigley_as_a_surface(tmp_path):
-    rings, given = [], wigley(31, 21)
+    rings, given = [], wigley(61, 21)
     for x in np.unique(given[1:-1, 0])[1:-1]:
         z, y = given[given[:, 0] == x][1:, 1:].T
         keel = [[x, 0.0, 0.0]]
         starboard = np.column_stack([np.full_like(z, x), y, z])
         rings.append(np.concatenate([keel, starboard, (starboard * [1, -1, 1])[::-1]]))
-    form = read_surface(stl(tmp_path / "wigley.stl", tube(np.array(rings))), 29)
+    form, _ = read_surface(stl(tmp_path / "wigley.stl", tube(np.array(rings))), 59)
     same = of(given[(given[:, 0] > 0.0) & (given[:, 0] < LENGTH)])
     one, other = (hull.hydrostatics(DRAUGHT, FRESH) for hull in (form, same))
     assert (one.volume, one.km, one.bml) == pytest.approx((other.volume, other.km, other.bml), rel=1e-5)

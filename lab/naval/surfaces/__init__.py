@@ -1,0 +1,1 @@
+"""Hulls from closed surfaces of triangles."""
