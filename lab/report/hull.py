@@ -21,7 +21,7 @@ from lab.naval.surfaces.offsets import write_offsets
 from lab.naval.surfaces.read import read_surface
 from lab.naval.surfaces.selfcheck import self_check
 from lab.naval.weights import Weights, read_weights
-from lab.report.stability import HEEL, SIGNS, aligned, save_axes
+from lab.report.stability import HEEL, SIGNS, aligned, columns, save_axes
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.form import Form
 from solvers.ship.naval.holds import Hold
@@ -30,6 +30,7 @@ from solvers.ship.water import Water
 SURFACES = (".stl",)
 DEEPEST = 0.95  # of the depth: the last draught of the tables
 WITH_WEIGHTS = "points", "grain", "wind"
+BRIEFLY = "T m", "displacement t", "LCB m", "KB m", "KM m", "TPC t/cm", "MCT t m/cm", "LCF m", "Cb"  # what is shown
 
 
 @dataclass(frozen=True)
@@ -101,11 +102,12 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
         lines += self_check(form, mesh, asked.stations)
         if mesh is None:
             lines.append(f"  {between_offsets(path, form, asked.fair)}")
+        lines += ["", *columns(written["hydrostatics"], BRIEFLY)]
         holds = read_holds(asked.holds, form) if asked.holds else {}
         written |= {f"hold-{name}": tables.hold(hold) for name, hold in holds.items()}
         if asked.weights:
             found, tables_of = _judged(form, water, asked, holds, folder, path.name)
-            lines += found
+            lines += ["", *found]
             written |= tables_of
         if asked.at is not None:
             lines += ["", outline_at(form, asked.at)]

@@ -1,5 +1,6 @@
 """Hulls from offsets and surfaces: closed forms, published hulls, one against the other, and what is refused."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -149,6 +150,9 @@ def test_command_with_weights(tmp_path):
         "righting-levers.png",
     }
     assert '["13.5 m", "14 m"]' in answer.output
+    assert (
+        len(re.findall(r"^ +[0-9.]+ +[0-9.]+ +65\.000 .* 1\.0000$", answer.output, re.MULTILINE)) == 11
+    )  # a row a draught
 
 
 def test_weight_off_the_middle_lists_her_to_starboard(tmp_path):

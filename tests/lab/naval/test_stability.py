@@ -1,6 +1,7 @@
 """`cargolab stability`: a ship judged without a simulation, its tables, figure, and what it cannot judge."""
 
 import csv
+import re
 
 import numpy as np
 import pytest
@@ -99,7 +100,24 @@ def test_command_writes_tables_and_figure(tmp_path):
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {
         f"{name}.csv" for name in ("criteria", "righting-levers", "hydrostatics", "cross-curves", "hold")
-    } | {"righting-levers.png"}
+    } | {"righting-levers.png", "stability.html"}
+
+
+def test_page_for_the_file_has_what_the_sheet_has(tmp_path):
+    """The page that `stability` promises: each criterion with its verdict, figure, tables, inputs, and no link."""
+    answer = CliRunner().invoke(stability, [SHIP, "--set", "ship.gravity_height=9.61 m", "--out", str(tmp_path)])
+    assert answer.exit_code == 0, answer.output
+    page = (tmp_path / "stability.html").read_text(encoding="utf-8")
+    with (tmp_path / "criteria.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        assert row["rule"] in page and f'<td class="n">{row["attained"]}</td>' in page
+    assert page.count('<td class="fail">fail</td>') == sum(row["verdict"] == "fail" for row in rows) > 0
+    for name in ("hydrostatics", "cross-curves", "hold"):
+        last = (tmp_path / f"{name}.csv").read_text(encoding="utf-8").splitlines()[-1]
+        assert "".join(f"<td>{cell}</td>" for cell in last.split(",")) in page
+    assert "data:image/png;base64," in page and "starboard down" in page and "9.61 m" in page
+    assert not re.search(r"(href|src)=.(?!data:)", page)
 
 
 @pytest.mark.parametrize(
