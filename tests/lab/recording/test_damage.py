@@ -10,10 +10,11 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.paint.video import render_recording
-from lab.recording import Recorder, layout, open_recording
+from lab.recording import Recorder, layout, new_recording, open_recording
 from lab.recording.checks import Checks
-from lab.recording.layout import GROUPS
+from lab.recording.layout import GROUPS, rows_of, sizes_of, tables_of
 from tests.lab.preset.test_malformed import call, refused
+from tests.oracles.recorded_water import POOL, pool
 from tests.oracles.synthetic import frame, recorder, sample
 from tests.oracles.tampering import flipped, used
 
@@ -32,14 +33,48 @@ def record(folder: Path, rows: int = ROWS, **options: object) -> Recorder:
     return run
 
 
+def record_wet(folder: Path) -> None:
+    """As `record`, of water and air over it, with gauges."""
+    chance, preset, volume = (
+        np.random.default_rng(6),
+        pool(water={"depth": "0.1 m"}, air={}),
+        np.full((1, GRAINS), 4e-4),
+    )
+    sizes = sizes_of(preset, np.zeros((1, 0)), volume, 0, volume)
+    series, frames = (rows_of(tables_of(preset, steered=False)[name], sizes) for name in ("series", "frames"))
+    new_recording(
+        folder,
+        preset="pool",
+        given=POOL,
+        resolved=preset,
+        radius=np.zeros((1, 0)),
+        volume=volume,
+        air=volume,
+        outline=np.array([(-0.5, 0.0), (0.5, 0.0), (0.5, 0.5), (-0.5, 0.5)]),
+        step=1e-4,
+    )
+    with Recorder(folder) as run:
+        for k in range(ROWS):
+            run.sample({name: chance.random(shape) for name, (shape, _) in series.items()} | {"time": 0.1 * k})
+            if k % A_FRAME == 0:
+                run.frame({name: chance.random(shape) for name, (shape, _) in frames.items()} | {"time": 0.1 * k})
+
+
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory) -> Path:
-    """A recording with parts and fixed grains, in small chunks."""
-    folder = tmp_path_factory.mktemp("whole")
+def recorded(tmp_path_factory) -> dict[str, Path]:
+    """A recording with parts and fixed grains, and one of water and air, in small chunks."""
+    home = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(layout, "CHUNK_ROWS", 16)
-        record(folder, fixed=[[0.0, 0.0, 0.01]], open_edges=[1]).close()
-    return folder / "recording.h5"
+        record(home / "grains", fixed=[[0.0, 0.0, 0.01]], open_edges=[1]).close()
+        record_wet(home / "water and air")
+    return {folder.name: folder / "recording.h5" for folder in home.iterdir()}
+
+
+@pytest.fixture(scope="module")
+def whole(recorded) -> Path:
+    """The one of grains."""
+    return recorded["grains"]
 
 
 def contents(path: Path) -> dict[str, object]:
@@ -47,7 +82,8 @@ def contents(path: Path) -> dict[str, object]:
     with open_recording(path) as found:
         tables = {"series": found.series, "frames": found.frames}
         arrays = {f"{name}/{key}": table[key][:].tobytes() for name, table in tables.items() for key in table}
-        arrays |= {name: getattr(found, name).tobytes() for name in ("radius", "kind", "outline", "fixed")}
+        fixed = "radius", "kind", "volume", "air_volume", "outline", "fixed"
+        arrays |= {name: getattr(found, name).tobytes() for name in fixed}
         said = "name", "given", "preset", "status", "created", "versions", "machine", "step", "wall_s", "open_edges"
         return arrays | {name: getattr(found, name) for name in (*said, "grain_steps", "parts", "quantities")}
 
@@ -70,9 +106,13 @@ def bit_of(path: Path, name: str, row: int) -> int:
         return 8 * (chunk.byte_offset + row % data.chunks[0] * int(np.prod(data.shape[1:])) * data.dtype.itemsize) + 3
 
 
-@pytest.mark.parametrize("times", [1, pytest.param(8, marks=pytest.mark.slow)])
-def test_a_flipped_bit_is_reported_and_never_read(whole, tmp_path, times):
+@pytest.mark.parametrize(
+    ("kind", "times"),
+    [("grains", 1), *(pytest.param(kind, 8, marks=pytest.mark.slow) for kind in ("grains", "water and air"))],
+)
+def test_a_flipped_bit_is_reported_and_never_read(recorded, tmp_path, kind, times):
     """So many times 25 of all bits that hold numbers or texts, and 5 of the rest of the file."""
+    whole = recorded[kind]
     expected, chance = contents(whole), random.Random(11)
     places = used(whole).tolist()
     bits = [8 * chance.choice(places) + chance.randrange(8) for _ in range(25 * times)]
@@ -90,6 +130,15 @@ def test_a_flipped_bit_is_reported_and_never_read(whole, tmp_path, times):
         else:
             assert found == expected, bit
     assert len(set(bits) & set(caught)) == len(set(bits))
+
+
+@pytest.mark.parametrize("kind", ["grains", "water and air"])
+def test_a_file_that_was_cut_is_refused(recorded, tmp_path, kind):
+    content, path, chance = recorded[kind].read_bytes(), tmp_path / "recording.h5", random.Random(3)
+    for length in (0, 1, 100, *(chance.randrange(len(content)) for _ in range(20)), len(content) - 1):
+        path.write_bytes(content[:length])
+        with pytest.raises(LabError, match="cannot be read as a recording"):
+            open_recording(tmp_path)
 
 
 def test_rows_before_the_damage_can_be_read_and_painted(whole, tmp_path):

@@ -16,7 +16,9 @@ from tests.oracles.processes import COMMAND, RUN, SET, SETTINGS, Ended, begin, b
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux's limits and its lists of processes")
 
-KILLS, BLOWS = 10, 5  # of each command in all, and of one run of it at most
+# Of each command in all, and of one run of it at most; KILLS=40 before a release
+KILLS, BLOWS = int(os.environ.get("KILLS", 10)), 5
+OFFSETS = Path(__file__).parents[3] / "presets" / "ship" / "s175-supply-vessel.csv"
 WARM = 0.6  # of the time of a command that compiles its kernels, about that of one that finds them
 ANEW = ("--set", "grains.reuse_bed=false")  # so that settling may be cut short, too
 NO_FIGURES = """
@@ -32,6 +34,30 @@ motion.sway = { amplitude = "10 mm", frequency = "1 Hz" }
 run = { duration = "1 s", repeats = 2, threads = 1 }
 record.checkpoint_every = "0 s"
 """
+CUP = """
+format = 3
+title = "A closed cup of water and air"
+tank = { width = "60 mm", height = "60 mm" }
+water = { depth = "24 mm", spacing = "6 mm", sound_speed = "12 m/s" }
+air = {}
+gauges.P1 = { place = ["-30 mm", "12 mm"] }
+motion.sway = { amplitude = "3 mm", frequency = "3 Hz" }
+run = { duration = "0.4 s", threads = 1, schedule = "per-world" }
+record.checkpoint_every = "0 s"
+"""
+SHIP = """
+format = 3
+title = "A ship by her lines in waves, with coarse water in her tank"
+based_on = "ship/anti-roll-s175"
+ship.offsets = "OFFSETS"
+water.spacing = "0.3 m"
+run = { duration = "20 s", threads = 1, schedule = "per-world" }
+record.checkpoint_every = "0 s"
+"""
+SCENES = {
+    "a cup of water and air": CUP,
+    "a ship with water in her tank": SHIP.replace("OFFSETS", str(OFFSETS)),
+}
 BATCHES = f"""
 import sys
 from pathlib import Path
@@ -85,6 +111,34 @@ def test_a_run_killed_at_random_times_gives_the_same_results(tmp_path):
     """Of an empty tank, which compiles fast, and without figures, which take as long as the rest of such a run."""
     (tmp_path / "tank.toml").write_text(TANK)
     killed(tmp_path, ["run", tmp_path / "tank.toml", "--no-video", "--out"], RESUME, COMMAND, 1, NO_FIGURES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_water_air_and_ships_killed_at_random_times_give_the_same_results(name, tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENES[name])
+    killed(tmp_path, ["run", tmp_path / "scene.toml", "--no-video", "--out"], RESUME, COMMAND, KILLS, NO_FIGURES)
+
+
+SHEETS = {"stability": ("stability", "ship/handysize-grain", "--out"), "hull": ("hull", OFFSETS, "--out")}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SHEETS)
+def test_a_sheet_that_is_cut_short_leaves_whole_files_alone(name, tmp_path):
+    def files(folder: Path) -> dict[str, bytes]:
+        return {path.name: path.read_bytes() for path in folder.glob("*") if ".part" not in path.name}
+
+    begun, chance = time.monotonic(), random.Random(2)
+    assert call([*SHEETS[name], tmp_path / "whole"]).done
+    lasts, expected = time.monotonic() - begun, files(tmp_path / "whole")
+    for _ in range(KILLS):
+        process = begin([*SHEETS[name], tmp_path / "cut"])
+        time.sleep(chance.uniform(0.4, 1.0) * lasts)
+        kill(process, all_at_once=True)
+        assert files(tmp_path / "cut").items() <= expected.items()
+    assert call([*SHEETS[name], tmp_path / "cut"]).done
+    assert {path.name: path.read_bytes() for path in (tmp_path / "cut").iterdir()} == expected
 
 
 @pytest.mark.slow
