@@ -69,7 +69,9 @@ def _show(name: str, out: Path, beds: int, progress: Progress) -> None:
         if told.get("asked") == wanted:
             progress.say(f"{name}: kept, made by version {told['version']} on {told['date']}")
             return
-        progress.say(f"{name}: what is there is of another preset or of other beds; it is made anew …")
+        progress.say(
+            f"{name}: what is there is of another preset, of other beds or of an earlier version; it is made anew …"
+        )
         clip.unlink()  # else it would count as made where this is cut short
     else:
         progress.say(f"{name} …")

@@ -167,6 +167,20 @@ def test_a_run_that_lacks_room_ends_in_a_sentence_and_what_it_left_can_be_read(w
             assert all(len(values) >= 0 for values in recording.series.values())
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("what", "amount"), [("AS", 1.9e9), ("AS", 2.2e9), ("NOFILE", 16), ("FSIZE", 5e4), ("FSIZE", 3e5)]
+)
+def test_water_that_lacks_room_ends_in_a_sentence_and_what_it_left_can_be_read(what, amount, tmp_path):
+    (tmp_path / "cup.toml").write_text(CUP)
+    line = ["run", tmp_path / "cup.toml", "--no-video", "--out", tmp_path / "run"]
+    ended = call(line, LIMIT.format(what, int(amount)))
+    assert ended.done or ended.in_a_sentence, ended
+    if what == "FSIZE" and (tmp_path / "run" / FILE_NAME).exists():
+        with open_recording(tmp_path / "run") as recording:
+            assert all(len(values) >= 0 for values in recording.series.values())
+
+
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory) -> dict[str, str]:
     """The bits of an undisturbed run."""
