@@ -21,10 +21,20 @@ ASSUMED, AS_IT_LIES = "assumed shift", "as it lay farthest aside"
 
 @dataclass(frozen=True)
 class Row:
-    """A criterion of a sheet, and with which shift of the cargo it was judged, "" where that does not matter."""
+    """A criterion of a sheet, and with which shift of the cargo it was judged, "" where that does not matter.
+
+    Where that shift is a run's, `told` is what its beds tell of the criterion, and `grounds` what they are.
+    """
 
     shift: str
     criterion: Criterion
+    told: str = ""
+    grounds: str = ""
+
+    @property
+    def verdict(self) -> str:
+        """ "pass" or "fail"; of a run that cannot tell, "cannot tell"."""
+        return self.told or self.criterion.verdict
 
 
 class Judged(Protocol):

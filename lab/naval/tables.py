@@ -47,7 +47,7 @@ def criteria(rows: Sequence[Row]) -> Table:
     for row in rows:
         one = row.criterion
         attained, margin = shown(one.attained, one.unit), shown(one.margin, one.unit)
-        numbers = (f"{one.limit:.4g}", attained, one.unit, margin, one.verdict, one.note)
+        numbers = (f"{one.limit:.4g}", attained, one.unit, margin, row.verdict, one.note)
         lines.append((one.rule, one.what, row.shift, one.kind, *numbers))
     return header, lines
 

@@ -1,12 +1,16 @@
 """What is said of a ship: by `cargolab explain` her balance, roll and forces, in reports the sheet of criteria."""
 
-from collections.abc import Iterator
-from math import pi
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isfinite, nan, pi
+
+import numpy as np
 
 from lab.assembly.ship import flooding_angles, righting
 from lab.base.errors import LabError
 from lab.measures import ship_grain, ship_unevenness
 from lab.measures.ship import has_ship, vessel_of
+from lab.measures.value import over_worlds
 from lab.naval import sheet
 from lab.naval.condition import Condition, condition
 from lab.preset.sections import ship as ships
@@ -15,10 +19,14 @@ from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording
 from solvers.ship.naval import trimming
+from solvers.ship.naval.criteria import Criterion
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import froude_factors
 
+CANNOT_TELL = "cannot tell"
+CREPT = 1.05  # times as far aside in the last tenth of a run as before: the cargo still shifts
+SAME_MASS = 0.02  # by which the bed may weigh more or less than its volume at the stated stowage factor
 OF = {"section": "", "strips": "; by strips of her hull", "hull": "; of her hull in space"}
 
 
@@ -96,8 +104,9 @@ def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]
         return [], [], []
     found = ship_grain.shift(recording)
     if found is not None:
-        ship, arm = found.condition, found.lying(ship_grain.worst(found))
-        return [*sheet.rows(ship, arm), *_trimming(recording, ship)], sheet.facts(ship), list(sheet.unjudged(ship))
+        rows = [*_lying(recording, found), *_trimming(recording, found.condition)]
+        notes = [*sheet.unjudged(found.condition), *_cautions(recording, found.condition, rows)]
+        return rows, sheet.facts(found.condition), notes
     vessel = vessel_of(recording.path)
     if vessel is None:
         return [], [], []
@@ -108,18 +117,72 @@ def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]
     return sheet.rows(alone), sheet.facts(alone), list(sheet.unjudged(alone))
 
 
-def _trimming(recording: Recording, found: Condition) -> list[sheet.Row]:
+def _lying(recording: Recording, found: ship_grain.Shift) -> Iterator[sheet.Row]:
+    """The sheet with the cargo as it lay in the worst bed; what rests on the run is judged by all of its beds."""
+    beds = [sheet.rows(found.condition, found.lying(way)) for way in found.farthest]
+    aside, last = np.abs(found.way[..., 0]), found.last(recording.series["time"]).start
+    still = bool((aside.max(axis=0) <= CREPT * aside[: max(last, 1)].max(axis=0)).all())
+    for k, row in enumerate(sheet.rows(found.condition, found.lying(ship_grain.worst(found)))):
+        if row.shift != sheet.AS_IT_LIES:
+            yield row
+            continue
+        told = verdict_of([bed[k].criterion for bed in beds])
+        moving = told == "pass" and not still
+        grounds = grounds_of(recording) + "; it still shifted at the end" * moving
+        yield replace(row, told=CANNOT_TELL if moving else told, grounds=grounds)
+
+
+def verdict_of(beds: Sequence[Criterion]) -> str:
+    """What beds tell of one criterion: "pass" or "fail" where the 95 % interval of their mean does, else "cannot tell".
+
+    One bed has no interval. A bed in which she finds no equilibrium fails, and leaves the mean unknown.
+    """
+    attained = over_worlds([one.attained if isfinite(one.attained) else nan for one in beds], "")
+    if attained.n < len(beds):
+        return "fail" if len(beds) > 1 and not any(one.passed for one in beds) else CANNOT_TELL
+    ends = attained.interval
+    told = {replace(beds[0], attained=end).verdict for end in ends} if ends else set()
+    return told.pop() if len(told) == 1 else CANNOT_TELL
+
+
+def grounds_of(recording: Recording) -> str:
+    """What a verdict of a run rests on: beds, grains and what they stand for, time."""
+    preset, count = recording.preset, recording.radius.shape[1]
+    beds = "1 bed" if recording.worlds == 1 else f"{recording.worlds} beds"
+    size, real = preset.mean_diameter, preset.grains.stands_for
+    coarse = f", {size / real:.3g} times as large as the real ones" if real else ""
+    across = f"{preset.tank.extent[0] / size:.0f} across the hold"
+    return f"{beds} of {count} grains, {across}{coarse}; {show(float(recording.series['time'][-1]), 's')}"
+
+
+def _cautions(recording: Recording, ship: Condition, rows: list[sheet.Row]) -> Iterator[str]:
+    """What a reader must know of a sheet that rests on a run, a sentence each."""
+    if recording.worlds == 1 and any(row.told for row in rows):
+        yield (
+            "One bed cannot tell whether she passes with the cargo as it lay, since it does not say how far beds "
+            "differ: run several (run.repeats), and again with grains of half the size."
+        )
+    stated = ship.cargo.volume / ship.stowage
+    if abs(ship.cargo.mass / stated - 1.0) > SAME_MASS:
+        yield (
+            f"Two masses of grain: the assumed shift is that of {stated:.5g} t, {ship.cargo.volume:.5g} m3 at the "
+            f"stated {ship.stowage:.3f} m3/t, and in the run {ship.cargo.mass:.5g} t shifted, as the bed of model "
+            "grains weighs; change material.density or the number of grains until both agree."
+        )
+
+
+def _trimming(recording: Recording, found: Condition) -> Iterator[sheet.Row]:
     """The IMSBC Code's criterion of a cargo that is no grain, as she was loaded and as it lay at the end."""
     if not ship_unevenness.applies(recording):
-        return []
+        return
     measured = ship_unevenness.measure(recording)
-    rows = []
     for shift, name in {"as loaded": "unevenness", "as it lay at the end": "final_unevenness"}.items():
-        height = max((world for world in measured[name].worlds if world is not None), default=None)
-        if height is not None:
-            one = trimming.criterion(height, recording.preset.ship.repose, found.hydrostatics.breadth)
-            rows += [sheet.Row(shift, one)] if one else []
-    return rows
+        heights = [world for world in measured[name].worlds if world is not None]
+        given = recording.preset.ship.repose, found.hydrostatics.breadth
+        beds = [one for height in heights if (one := trimming.criterion(height, *given))]
+        if beds:
+            worst = max(beds, key=lambda one: one.attained)
+            yield sheet.Row(shift, worst, verdict_of(beds), grounds_of(recording))
 
 
 def criteria(recording: Recording) -> Iterator[str]:
@@ -132,7 +195,8 @@ def criteria(recording: Recording) -> Iterator[str]:
     for row in rows:
         one = row.criterion
         what = f"{one.what} ({row.shift})" if row.shift else one.what
-        numbers = f"{one.kind} {one.limit:.4g}", sheet.shown(one.attained, one.unit), one.unit, one.verdict
+        verdict = f"{row.verdict}: {row.grounds}" if row.grounds else row.verdict
+        numbers = f"{one.kind} {one.limit:.4g}", sheet.shown(one.attained, one.unit), one.unit, verdict
         yield f"| {' | '.join((one.rule, what, *numbers))} |"
     yield from ("", *notes)
     yield "\nIn calm water; heel is positive starboard down. `cargolab report` puts it on one page for the file."

@@ -1,6 +1,7 @@
 """Where the cargo of a run lies beside what the code assumes, and the page of a run for the file."""
 
 import re
+from dataclasses import replace
 from hashlib import sha256
 
 import numpy as np
@@ -8,12 +9,14 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.measures import ship_grain
+from lab.naval import sheet
 from lab.preset.find import load
 from lab.preset.recorded import to_table
 from lab.recording import open_recording
 from lab.report import coarse, file, plots, ship
 from solvers.ship.cargo import filling_centre
 from solvers.ship.hydrostatics import Loading, equilibrium
+from solvers.ship.naval.criteria import Criterion
 from solvers.ship.naval.holds import Hold
 from solvers.ship.section import Section
 from tests.oracles.synthetic import frame, of_a_ship, recorder, sample
@@ -91,6 +94,47 @@ def test_page_for_the_file_is_whole_and_signed(run):
     assert page.count("data:image/png;base64,") >= 2
 
 
+def lists(*degrees: float) -> list[Criterion]:
+    """The Grain Code's heel of equilibrium, at most 12 deg, of some beds."""
+    return [Criterion("", "heel of equilibrium", "at most", 12.0, one, "deg") for one in degrees]
+
+
+def test_a_verdict_is_that_of_the_beds():
+    """Student's interval of three beds is 4.303 s/√3 to either side: of 6, 7, 8 it is 7 ± 2.5, of 8, 10, 12 10 ± 5."""
+    assert ship.verdict_of(lists(7.0)) == ship.verdict_of(lists(20.0)) == "cannot tell"
+    assert ship.verdict_of(lists(6.0, 7.0, 8.0)) == "pass"
+    assert ship.verdict_of(lists(8.0, 10.0, 12.0)) == "cannot tell"
+    assert ship.verdict_of(lists(17.0, 18.0, 19.0)) == "fail"
+    assert ship.verdict_of(lists(np.inf, np.inf, 30.0)) == "fail"  # two that never come to rest
+    assert ship.verdict_of(lists(np.inf, 3.0, 3.0)) == "cannot tell"
+
+
+def test_a_run_of_one_bed_is_not_green(run):
+    """The page says so, and on how many grains, for how long; what follows from the preset alone is judged."""
+    with open_recording(run) as recording:
+        judged, _, notes = ship.judged(recording)
+    of_run = [row for row in judged if row.shift == sheet.AS_IT_LIES]
+    assert of_run and {row.verdict for row in of_run} == {"cannot tell"}
+    assert all(row.grounds.startswith("1 bed of 2312 grains") and row.grounds.endswith("20 s") for row in of_run)
+    assert {row.verdict for row in judged if not row.grounds} <= {"pass", "fail"}
+    assert any(note.startswith("One bed cannot tell") for note in notes)
+    page = file.write_report(run)[0].read_text(encoding="utf-8")
+    assert '<span class="cannot-tell">cannot tell</span>' in page and "1 bed of 2312 grains" in page
+
+
+def test_two_masses_of_grain_are_told(run, measured, monkeypatch):
+    """3750 m³ at the stated 1.3 m³/t are 2885 t; the bed of the run weighs another mass, as its grains do."""
+    found = measured[1].condition
+    mass = found.cargo.mass
+    assert abs(mass / (3750.0 / 1.3) - 1.0) > ship.SAME_MASS
+    with open_recording(run) as recording:
+        notes = " ".join(ship.judged(recording)[2])
+        assert "Two masses of grain" in notes and "2884.6 t" in notes and f"{mass:.5g} t" in notes
+        alike = replace(found, cargo=replace(found.cargo, mass=2880.0))
+        monkeypatch.setattr(ship_grain, "shift", lambda _: replace(measured[1], condition=alike))
+        assert "Two masses" not in " ".join(ship.judged(recording)[2])
+
+
 def test_list_is_drawn_at_every_time(measured):
     """The list in calm water: starboard down, positive, at the end; to port when the cargo lay farthest, at 6 s."""
     found = measured[1]
@@ -124,6 +168,7 @@ def test_ore_is_judged_by_its_unevenness(tmp_path):
         ("as loaded", "pass"),
         ("as it lay at the end", "fail"),
     ]
+    assert {row.verdict for row in rows} == {"cannot tell"}  # of one bed
     assert rows[1].criterion.limit == 2.0 and rows[1].criterion.attained == pytest.approx(2.5, abs=0.2)
 
 
