@@ -19,16 +19,24 @@ provide_for_matplotlib()
 
 
 def run(
-    preset: str, out: Path | str | None = None, *, video: bool = True, quiet: bool = False, **overrides: object
+    preset: str,
+    out: Path | str | None = None,
+    *,
+    repeats: int | None = None,
+    video: bool = True,
+    plots: bool = True,
+    quiet: bool = False,
+    **overrides: object,
 ) -> Result:
     """Run a preset, `lab.run("tilting/quick", grains={"diameter": "4 mm"})`, and return its result with arrays.
 
-    `overrides` are tables of the preset, or single keys with `__` for the dot: `run__repeats=12`.
+    repeats: number of beds, each with its own seed; without `video` or `plots` these are not made. `overrides` are
+    tables of the preset, or single keys with `__` for the dot: `material__friction=0.4`.
     """
     with importing():
         from lab.runs.runner import run_preset
 
-    return run_preset(preset, _dotted(overrides), out, video=video, quiet=quiet)
+    return run_preset(preset, _dotted(overrides, repeats), out, video=video, plots=plots, quiet=quiet)
 
 
 def sweep(
@@ -36,6 +44,7 @@ def sweep(
     axes: Mapping[str, str | Sequence],
     out: Path | str | None = None,
     *,
+    repeats: int | None = None,
     video: bool = True,
     quiet: bool = False,
     cluster: str | None = None,
@@ -44,11 +53,11 @@ def sweep(
     """Run a preset at every combination of values: `lab.sweep("shaking/sway", {"motion.sway.frequency": "0.5:2:7Hz"})`.
 
     axes: for each key a range or list as text, as `cargolab sweep` takes it, or a sequence of values; cluster: the
-    address of a Dask scheduler whose workers run the points; `overrides` as in `run`.
+    address of a Dask scheduler whose workers run the points; `repeats` and `overrides` as in `run`.
     """
     from lab.sweeps.sweep import run_sweep
 
-    return run_sweep(preset, axes, _dotted(overrides), out, video=video, quiet=quiet, cluster=cluster)
+    return run_sweep(preset, axes, _dotted(overrides, repeats), out, video=video, quiet=quiet, cluster=cluster)
 
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
@@ -59,5 +68,6 @@ def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Re
     return resume_any(folder, video=video, quiet=quiet)
 
 
-def _dotted(overrides: Mapping[str, object]) -> dict[str, object]:
-    return {key.replace("__", "."): value for key, value in overrides.items()}
+def _dotted(overrides: Mapping[str, object], repeats: int | None) -> dict[str, object]:
+    given = {key.replace("__", "."): value for key, value in overrides.items()}
+    return given if repeats is None else given | {"run.repeats": repeats}

@@ -40,6 +40,8 @@ ASKED = "lab.sweeps.cluster imports lab"  # by a function that travels to a work
 MOST_FILES = 14  # in a folder, its __init__.py aside
 REGISTRIES = "lab/measures", "solvers/grains/laws", "solvers/motion"  # as many as there are measures, laws, motions
 
+PYTHONS = "len", "enumerate", "zip", "sum", "sorted", "reversed", "round", "isinstance", "map"
+
 MOST_LINES = 300  # of a file
 LONG = {  # too long, and not to become longer
     "lab/recording/writer.py": 352,
@@ -130,3 +132,23 @@ def test_the_page_for_developers_names_every_room():
     text = (ROOT / "docs" / "developing.md").read_text(encoding="utf-8")
     tables = re.findall(r"^\| `(\w+)/` \| is \|\n(.+?)\n\n", text, re.MULTILINE | re.DOTALL)
     assert {package: tuple(re.findall(r"^\| `(\w+)` \|", rows, re.MULTILINE)) for package, rows in tables} == FLOORS
+
+
+def of_taichi(function: ast.FunctionDef) -> bool:
+    return any("ti.func" in ast.unparse(one) or "ti.kernel" in ast.unparse(one) for one in function.decorator_list)
+
+
+def of_python(function: ast.FunctionDef) -> Iterator[str]:
+    """The calls in a function for Taichi of what only Python knows, outside of ti.static."""
+    calls = [one for one in ast.walk(function) if isinstance(one, ast.Call)]
+    fixed = {id(part) for call in calls if ast.unparse(call.func) == "ti.static" for part in ast.walk(call)}
+    for call in calls:
+        if isinstance(call.func, ast.Name) and call.func.id in PYTHONS and id(call) not in fixed:
+            yield f"{function.name}, line {call.lineno}: {ast.unparse(call)}"
+
+
+def test_kernels_call_nothing_of_pythons():
+    """Taichi would warn of it on every machine that compiles them."""
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in (ROOT / "solvers").rglob("*.py")]
+    functions = [one for tree in trees for one in ast.walk(tree) if isinstance(one, ast.FunctionDef) and of_taichi(one)]
+    assert functions and [call for function in functions for call in of_python(function)] == []

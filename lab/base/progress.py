@@ -1,4 +1,4 @@
-"""Progress messages: a bar with the remaining time in a terminal, otherwise one line per stage."""
+"""Progress messages: a bar with the remaining time in a terminal, otherwise a line per stage and every half minute."""
 
 import sys
 import time
@@ -14,6 +14,9 @@ from lab.base.text import one_line
 
 if TYPE_CHECKING:
     from solvers.simulation import Simulation
+
+
+EVERY = 30.0  # s between two lines of a stage where there is no terminal
 
 
 class Progress:
@@ -32,6 +35,7 @@ class Progress:
         )
         self.bar = Bar(*columns, console=self.console, disable=not self.live, speed_estimate_period=600.0)
         self.task, self.total, self.cost = None, None, 0.0
+        self.stage, self.begun_stage, self.told = "", 0.0, 0.0
         self.whole, self.done = None, 0.0
         self.warnings: list[str] = []
         self.notes: list[str] = []
@@ -61,13 +65,17 @@ class Progress:
 
     def start(self, stage: str, total: float | None, cost: float = 0.0) -> None:
         """Begin a stage that ends at `total`, in any unit, and adds `cost` to the overall bar."""
+        self.stage, self.begun_stage, self.told = stage, time.monotonic(), time.monotonic()
         if not self.live:
             self.say(f"{stage} …")
         self.task, self.total, self.cost = self.bar.add_task(stage, total=total), total, cost
 
     def reach(self, done: float) -> None:
-        """Update the bar: `done` of the stage's total."""
+        """Update the bar: `done` of the stage's total. In a log a line says so every half minute."""
         self.bar.update(self.task, completed=done)
+        if not self.live and self.total and time.monotonic() - self.told >= EVERY:
+            self.told = time.monotonic()
+            self.say(f"{self.stage}: {100 * done / self.total:.0f} % after {_span(self.told - self.begun_stage)}")
         if self.whole is not None and self.total:
             self.bar.update(self.whole, completed=self.done + self.cost * min(done / self.total, 1.0))
 
@@ -107,3 +115,7 @@ class Progress:
     def say(self, sentence: str) -> None:
         """Print one line."""
         self.console.print(one_line(sentence), soft_wrap=True)
+
+
+def _span(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} min"

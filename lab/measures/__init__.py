@@ -51,7 +51,7 @@ from lab.measures import (
     water_residual,
     wave,
 )
-from lab.measures.value import Value
+from lab.measures.value import Measures
 from lab.recording import Recording
 
 # In the order in which a report shows their numbers and figures.
@@ -94,9 +94,9 @@ MEASURES = (
 )
 
 
-def measure_all(recording: Recording) -> dict[str, Value]:
+def measure_all(recording: Recording) -> Measures:
     """Every number that can be measured on this recording, by name. Raises LabError if damaged."""
-    found: dict[str, Value] = {}
+    found = Measures()
     if not len(recording.series["time"]):
         return found
     for measure in applicable(recording):

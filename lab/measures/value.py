@@ -3,8 +3,11 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 import numpy as np
+
+from lab.base.errors import LabError
 
 LEVEL = 0.95  # of intervals
 
@@ -72,6 +75,25 @@ class Value:
         if not all(isinstance(text, str) for text in (data["unit"], note, kind)):
             raise ValueError("a measure has a unit or a note that is no text")
         return cls(data["value"], data["unit"], data["std"], data["uncertainty"], worlds, note, kind)
+
+
+class NotMeasured(LabError, KeyError):
+    """A run has no such measure. Also a KeyError, so that `get` and `in` work."""
+
+    __str__ = Exception.__str__  # a KeyError would put its sentence in quotes
+
+
+class Measures(dict[str, Value]):
+    """The measures of a run by name; a name may be written as the lab prints it, "critical angle"."""
+
+    def __missing__(self, name: object) -> Value:
+        """The measure of a name with blanks. Raises NotMeasured, which names those that there are."""
+        plain = str(name).replace(" ", "_")
+        if plain != name and plain in self:
+            return self[plain]
+        near = get_close_matches(plain[:100], self, n=1)
+        has = f"did you mean {near[0]}?" if near else f"it has {', '.join(self) or 'none'}."
+        raise NotMeasured(f"this run has no measure {str(name)[:100]!r}; {has}")
 
 
 # Kinds of a measure's own uncertainty, and what each is.

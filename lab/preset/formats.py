@@ -12,6 +12,7 @@ from lab.base.errors import LabError
 from lab.preset.units import quoted
 
 FORMAT = 3
+SEA = "density", "depth"  # keys of the sea in format 2
 
 
 class OldFormat(UserWarning):
@@ -34,6 +35,7 @@ def upgrade(tables: Sequence[dict], shown: str) -> None:
         return
     for table in tables:
         if "water" in table:
+            _check_sea(table["water"], shown)
             if "sea" in table:
                 raise LabError(f"{shown}: water: without format = {FORMAT} this is the sea, which [sea] is, too.")
             table["sea"] = table.pop("water")
@@ -42,6 +44,16 @@ def upgrade(tables: Sequence[dict], shown: str) -> None:
         OldFormat,
         stacklevel=2,
     )
+
+
+def _check_sea(table: object, shown: str) -> None:
+    """Raise LabError for a table that no sea is but water in a tank, whose preset says no format."""
+    strange = [key for key in table if key not in SEA] if isinstance(table, Mapping) else []
+    if strange:
+        raise LabError(
+            f"{shown}: water.{quoted(str(strange[0]))[1:-1]}: write format = {FORMAT} at the top of the file; without "
+            "it [water] is the sea outside, which has a density and a depth alone."
+        )
 
 
 def _format(table: Mapping, shown: str) -> int | None:

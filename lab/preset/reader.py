@@ -12,13 +12,14 @@ from unicodedata import category
 
 from lab.base.errors import LabError
 from lab.base.toml import BARE_KEY
-from lab.preset.fields import Table, Taken, defaults_of, join, taken_of, walk
+from lab.preset.fields import NAME, Table, Taken, defaults_of, join, taken_of, walk
 from lab.preset.tables import read_table
 from lab.preset.units import needed, parse, quoted, show
 
 T = TypeVar("T")
 
 LIKELY = 0.7  # similarity above which a key here is suggested before a key of the same name in another section
+MOST_HINTS = 3  # keys of the same name that a hint lists
 LONGEST_NAME = 40  # characters of a table's name that a user chooses
 BOUND = 1e15  # SI numbers must be within 1/BOUND and BOUND; their squares and cubes stay finite
 
@@ -72,10 +73,23 @@ def _refuse(key: object, wrong: str, known: list[str], everywhere: list[str]) ->
 
 
 def _hint(key: object, known: list[str], everywhere: list[str]) -> str:
-    near = get_close_matches(str(key)[:100], known, n=1, cutoff=LIKELY)
-    near = near or [dotted for dotted in everywhere if dotted.endswith(f".{key}")][:1]
-    near = near or get_close_matches(str(key)[:100], known, n=1)
-    return f"did you mean '{near[0]}'?" if near else f"known here: {', '.join(known)}."
+    here, text = set(known) <= set(everywhere), str(key)[:100]  # at the top, where keys of all sections get lost
+    same = [dotted for dotted in everywhere if dotted.endswith(f".{key}")]
+    same = [dotted for dotted in same if NAME not in dotted.split(".")] or same
+    same = same[: MOST_HINTS if here else 1]
+    likely = get_close_matches(text, known, n=1, cutoff=LIKELY)
+    found = same or likely if here else likely or same
+    found = found or (_below(text, everywhere) if here else []) or get_close_matches(text, known, n=1)
+    if not found:
+        return f"known here: {', '.join(known)}."
+    *others, last = [f"'{one}'" for one in found]
+    return f"did you mean {', '.join(others)}{' or ' * bool(others)}{last}?"
+
+
+def _below(text: str, everywhere: list[str]) -> list[str]:
+    """The dotted key whose last part is most like a text."""
+    ends = {dotted.rpartition(".")[2]: dotted for dotted in reversed(everywhere)}
+    return [ends[near] for near in get_close_matches(text, ends, n=1, cutoff=LIKELY)]
 
 
 def _value(taken: Taken, raw: object, key: str) -> Any:

@@ -108,6 +108,7 @@ def resume_calibration(folder: Path | str, *, quiet: bool = False) -> Calibratio
 def parse_request(request: Request) -> Plan:
     """Parse and check a request as far as is possible before a run. Raises LabError."""
     name, wanted = _pair("--target", request.target, 'repose="41.3 deg"')
+    name = name.replace(" ", "_")  # summaries print it with blanks
     given, span = _pair("--vary", request.vary, "friction=0.2:0.7")
     key = dotted_key(Preset, given)
     listed = _listed(key, span)

@@ -44,6 +44,7 @@ class Sight:
     def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int):
         self.exact, self.worlds = arrays.exact, worlds
         self.plates = tuple(k for k, part in enumerate(parts) if not is_solid(part))
+        self.count = len(self.plates)
         if self.plates:
             own = arrays.under("sight")
             lines = np.array([[*parts[k].points[0], *parts[k].points[1]] for k in self.plates])
@@ -66,7 +67,7 @@ class Sight:
     @ti.func
     def note(self, w, poses: ti.template()):
         """Note where the plates of a world are at the start and in the middle of a step, by their bodies' `poses`."""
-        for q in range(len(self.plates)):
+        for q in range(self.count):
             for part in range(AT_START, AT_MIDDLE + 1):
                 self.note_line(w, q, poses, part)
 
@@ -113,7 +114,7 @@ class Sight:
         w, own, other = b // p.stride, b % p.stride - before, jb % p.stride - before
         share, reach = p.ones(), ti.cast(self.lengths[REACH], p.real)
         sharp = ti.cast(1.0 / self.lengths[BLUR], p.real)
-        for q in range(len(self.plates)):
+        for q in range(self.count):
             first = ti.static(OF_LINE * part)
             t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
             y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
@@ -139,7 +140,7 @@ class Sight:
         p = self.particles
         w, off = b // p.stride, p.ones()
         far = ti.cast(FAR * self.lengths[REACH], p.real)
-        for q in range(len(self.plates)):
+        for q in range(self.count):
             first = ti.static(OF_LINE * part)
             for n in range(2):
                 if self.line[w, q, first + IN_LOW + n] == 0.0:

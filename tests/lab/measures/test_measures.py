@@ -3,12 +3,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from lab.base.errors import LabError
 from lab.measures import measure_all
 from lab.measures.critical_angle import find_steps
 from lab.measures.spectrum import amplitude_spectrum
 from lab.measures.steady import steady_window
 from lab.measures.surface_slope import CONFIDENCE, free_surface, inclination, theil_sen
-from lab.measures.value import over_worlds
+from lab.measures.value import Measures, over_worlds
 from lab.measures.wave import column_tops, surface_columns
 from lab.recording import open_recording
 from lab.recording.layout import series_of
@@ -393,6 +394,19 @@ def test_a_recording_without_samples_has_no_measures(tmp_path):
     recorder(tmp_path).close("stopped: interrupted by the user")
     with open_recording(tmp_path) as recording:
         assert measure_all(recording) == {}
+
+
+def test_a_measure_that_is_not_there_is_told_with_those_that_are():
+    """A sentence in place of a bare key; by the name that the lab prints it is found."""
+    value = over_worlds([20.8], "deg")
+    found = Measures(critical_angle=value, surface_slope=value)
+    assert found["critical angle"] is value and "critical_angle" in found and "repose" not in found
+    assert found.get("repose") is None
+    with pytest.raises(KeyError) as raised:
+        found["critcal_angle"]
+    assert str(raised.value) == "this run has no measure 'critcal_angle'; did you mean critical_angle?"
+    with pytest.raises(LabError, match=r"it has critical_angle, surface_slope\."):
+        found["x"]
 
 
 # --- spilling

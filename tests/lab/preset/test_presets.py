@@ -251,6 +251,10 @@ def test_invalid_outlines_are_refused(corners, words):
         ({"diameter": "3 mm"}, "diameter: unknown key; did you mean 'grains.diameter'?"),
         ({"motion.rol.amplitude": 1}, "motion.rol: unknown key; did you mean 'roll'?"),
         ({"wall.density": 1}, "wall.density: unknown key; did you mean 'material.density'?"),
+        ({"repeats": 12}, "repeats: unknown key; did you mean 'run.repeats'?"),
+        ({"fricton": 0.3}, "fricton: unknown key; did you mean 'material.friction'?"),
+        ({"spacing": "5 mm"}, "spacing: unknown key; did you mean 'water.spacing'?"),
+        ({"grain.diameter": "5 mm"}, "grain: unknown key; did you mean 'grains'?"),
         (
             {"motion.tilt.rate": "3 mm"},
             'motion.tilt.rate: "3 mm" is a length, but deg/s (an angular rate) is needed, '

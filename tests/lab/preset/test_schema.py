@@ -18,6 +18,7 @@ from lab.preset.reference import range_of, reference, value_of
 from lab.preset.schema import Preset
 from solvers.machine.marks import Interval
 from tests.lab.preset.test_malformed import LISTED, RICH, WET
+from tests.oracles.presets import error_of
 
 PRESETS = Path(__file__).parents[3] / "presets"
 VALIDATOR = Draft7Validator(json_schema())
@@ -183,3 +184,9 @@ def test_a_recorded_preset_of_an_earlier_version_has_the_present_keys():
     assert found["kinds"] == {"light": {"share": 0.3, "density": 700.0, "against": None}}
     assert found["motion"]["history"]["file"]["columns"] == {"time": [0.0, 1.0], "roll": [0.0, 0.1]}
     assert OLD["ship"]["sheet"] == 0.004  # the table that was given stays as it was
+
+
+def test_water_without_a_format_is_asked_for_it(tmp_path):
+    """[water] of a preset that says no format is the sea of format 2, which has no particles."""
+    (tmp_path / "mine.toml").write_text('title = "a"\n[water]\ndepth = "100 mm"\nspacing = "5 mm"\n')
+    assert "mine.toml: water.spacing: write format = 3 at the top of the file" in error_of(load, tmp_path / "mine.toml")

@@ -214,6 +214,7 @@ def test_whole_numbers_are_used_if_the_key_takes_them(sweeps, tmp_path):
     [
         ("repose=30 deg", 30.0, 0.0),
         ("repose=0.5 rad", np.degrees(0.5), 0.0),
+        ("critical angle = 30 deg", 30.0, 0.0),
         ("repose=30 ± 1.5 deg", 30.0, 1.5),
         ("repose=30 deg +- 1.5deg", 30.0, 1.5),
         ("final_shift_y=-3 ± 0.2 cm", -30.0, 2.0),

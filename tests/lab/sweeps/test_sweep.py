@@ -383,6 +383,10 @@ def test_the_python_call_takes_tables_and_keys(monkeypatch):
     assert calls == [
         (("shaking/sway", {"run.seed": "1:3:3"}, {"grains": {"count": 9}, "run.repeats": 2}, None), options)
     ]
+    monkeypatch.setattr("lab.runs.runner.run_preset", lambda *a, **k: calls.append((a, k)))
+    lab.run("shaking/sway", "out", repeats=12, plots=False)
+    options = {"video": True, "plots": False, "quiet": False}
+    assert calls[1:] == [(("shaking/sway", {"run.repeats": 12}, "out"), options)]
     assert callable(lab.sweep) and callable(lab.resume)  # no module of the same name has taken their place
 
 
