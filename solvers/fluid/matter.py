@@ -220,8 +220,8 @@ class WaterMatter(Matter):
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
         potential += self.scene.gravity * self.census.buoyed(sums, down)
-        viscous, held, work = self.forces.counted(self.census.behind.to_numpy())
-        diffusive = self.continuity.lost.to_numpy().reshape(len(mass), -1).sum(axis=1)
+        late = self.census.behind.to_numpy()
+        (viscous, held, work), by_parts = self.forces.counted(late), self.bodies.given(late)
         rows = {
             **self.census.of_water(sums, mass, centre),
             "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
@@ -230,15 +230,15 @@ class WaterMatter(Matter):
             "water_elastic": sums["elastic"],
             "water_total": sums["moving"] + potential + sums["elastic"],
             "water_viscous": viscous * thick,
-            "water_diffusive": diffusive * thick,
-            "water_work": (work + self.bodies.given()) * thick,
+            "water_diffusive": thick * self.continuity.lost.to_numpy().reshape(len(mass), -1).sum(axis=1),
+            "water_work": (work + by_parts.sum(axis=1)) * thick,
             "water_held": held * thick,
             "water_excess": sums["excess"],
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
             "water_escaped": sums["escaped"],
             **self.gauges.take(),
             **self.edges.take(),
-            **self.bodies.take(thick),
+            **self.bodies.take(thick, by_parts),
         }
         np.copyto(self.start, residual(rows, 0.0), where=np.isnan(self.start))
         return rows

@@ -32,7 +32,7 @@ class Bodies:
     Water that slides freely (`slip`) is accelerated by the part of it across the face before a dummy alone.
 
     `impulse` (units, parts; N s/m, N s) is what the water did to each part since it was last taken, `work` (units,
-    parts; J/m) what the parts have done on the water.
+    parts; J/m) what the parts have done on the water by the last kick, `power` (units, parts; W/m) in it.
     """
 
     def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int, lanes: int):
@@ -79,8 +79,8 @@ class Bodies:
             self.first = arrays.under("bodies").holding("first", first, "one", ti.i32)
             self.sight.join(arrays, particles, padded(self.solids.owner, self.room), self.first)
             own, each = arrays.under("bodies"), (units.axis, Axis("part", self.count))
-            names = "impulse_y", "impulse_z", "impulse_turn", "work"
-            *self.impulse, self.work = own.reals(each, *names, kind=own.exact)
+            names = "impulse_y", "impulse_z", "impulse_turn", "work", "power"
+            *self.impulse, self.work, self.power = own.reals(each, *names, kind=own.exact)
             self.force = own.reals(each, "force_y", "force_z", "moment", kind=own.exact, kept=False)
             (self.elapsed,) = own.reals((units.axis,), "elapsed", kind=own.exact)
 
@@ -216,8 +216,8 @@ class Bodies:
             if ti.static(self.moving):
                 o_y, o_z, rate = self.pose[w, k, Y], self.pose[w, k, Z], self.pose[w, k, RATE]
                 v_y, v_z = self.pose[w, k, V_Y] + rate * o_z, self.pose[w, k, V_Z] - rate * o_y
-                power = dot(load, [v_y, v_z, rate])
-                self.work[u, k] = self.work[u, k] - power * ti.cast(kick, self.exact)
+                self.power[u, k] = 0.0 - dot(load, [v_y, v_z, rate])
+                self.work[u, k] = self.work[u, k] + self.power[u, k] * ti.cast(kick, self.exact)
             for n in ti.static(range(3)):
                 self.impulse[n][u, k] = self.impulse[n][u, k] + load[n] * ti.cast(dt, self.exact)
                 self.force[n][u, k] = 0.0
@@ -226,15 +226,21 @@ class Bodies:
     def forget(self) -> None:
         """Forget all loads and work."""
         if self.count:
-            for field in (*self.impulse, *self.force, self.work, self.elapsed):
+            for field in (*self.impulse, *self.force, self.work, self.power, self.elapsed):
                 field.fill(0.0)
 
-    def given(self) -> np.ndarray:
-        """The work (W,) J/m of all parts on the water, by their motion in the tank."""
-        return self._of_worlds(self.work).sum(axis=1) if self.count else np.zeros(self.worlds)
+    def given(self, behind: np.ndarray) -> np.ndarray:
+        """The work (W, parts) J/m of the parts on the water, by their motion in the tank, up to now.
 
-    def take(self, thickness: float) -> dict[str, np.ndarray]:
-        """The mean loads on the parts (W, parts, 3) since they were last taken, which begin anew; and their work."""
+        The last kick was `behind` (W,) s ago. Without its second half the account is late where a plate hits water: by
+        half a step of a power that doubles within two.
+        """
+        if not self.count:
+            return np.zeros((self.worlds, 0))
+        return self._of_worlds(self.work) + behind[:, None] * self._of_worlds(self.power)
+
+    def take(self, thickness: float, work: np.ndarray) -> dict[str, np.ndarray]:
+        """The mean loads on the parts (W, parts, 3) since they were last taken, which begin anew; and their `work`."""
         if not self.count:
             return {"part_force": np.zeros((self.worlds, 0, 3)), "part_work": np.zeros((self.worlds, 0))}
         impulse = np.stack([self._of_worlds(field) for field in self.impulse], axis=-1)
@@ -242,7 +248,7 @@ class Bodies:
         for field in (*self.impulse, self.elapsed):
             field.fill(0.0)
         mean = thickness * impulse / np.where(elapsed > 0.0, elapsed, 1.0)[:, None, None]
-        return {"part_force": mean, "part_work": thickness * self._of_worlds(self.work)}
+        return {"part_force": mean, "part_work": thickness * work}
 
     def _of_worlds(self, field: ti.Field) -> np.ndarray:
         """Sums over the units of each world (W, parts)."""
