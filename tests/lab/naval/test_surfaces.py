@@ -6,14 +6,17 @@ from math import pi
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from lab.assembly.offsets import read_offsets
+from lab.cli.naval import hull
 from lab.naval import loaded
 from lab.naval.loaded import Loaded, Wind
 from lab.naval.surfaces.axes import Axes
 from lab.naval.surfaces.mesh import welded
 from lab.naval.surfaces.offsets import write_offsets
 from lab.naval.surfaces.read import read_surface
+from lab.naval.surfaces.selfcheck import self_check
 from lab.naval.surfaces.whole import body
 from lab.naval.weights import Weights
 from solvers.ship.water import Water
@@ -250,3 +253,34 @@ def hooked() -> np.ndarray:
     surface = tube(rings)[:-16]  # without the fans, which do not fit a C
     lids = [(0, 1, 6), (0, 6, 7), (1, 2, 5), (1, 5, 6), (2, 3, 4), (2, 4, 5)]
     return np.concatenate([surface, *[ring[np.array(lids)] for ring in rings]])
+
+
+def test_command_shows_what_it_read(tmp_path):
+    """Size, volumes, symmetry, perpendiculars and base line are said; offsets are from AP and base line."""
+    surface = stl(tmp_path / "box.stl", moved(BOX, -65.0, 0.0, -8.6))
+    answer = CliRunner().invoke(hull, [str(surface), "--stations", "5", "--out", str(tmp_path)])
+    assert answer.exit_code == 0, answer.output
+    said = " ".join(answer.output.split())
+    assert "L x B x D 130 x 27 x 14 m; x -65 to 65, y -13.5 to 13.5, z -8.6 to 5.4" in said
+    assert "volume 49140 m3 by the surface, 49140 by 5 stations; at all draughts within" in said
+    assert "symmetry both sides alike" in said and "AP, FP x -65 and 65 m, her ends" in said
+    assert "draughts from z -8.6 m, her keel amidships" in said
+    assert "offsets.csv is from her aft perpendicular (x -65 m) and her base line (z -8.6 m)" in said
+    first = (tmp_path / "hydrostatics.csv").read_text().splitlines()[1].split(",")
+    draught, centre = float(first[0]), float(first[4])
+    assert centre == pytest.approx(0.5 * draught - 8.6, abs=0.002)
+    offsets = tmp_path / "offsets.csv"
+    assert read_offsets(offsets).volume == pytest.approx(49140.0, rel=1e-5) and "0,0,13.5" in offsets.read_text()
+    answer = CliRunner().invoke(hull, [str(offsets), "--mirror", "--out", str(tmp_path)])
+    assert answer.exit_code != 0 and "--mirror and --close are for surfaces" in str(answer.exception or answer.output)
+
+
+def test_a_hull_whose_sides_differ_is_told_so(tmp_path):
+    """A box with a wing on her port side above water is read; her offsets, of half-breadths, are not written."""
+    outline = np.array([[-10, 0], [10, 0], [10, 10], [-16, 10], [-16, 9], [-10, 9]], dtype=float)
+    form, mesh = read_surface(stl(tmp_path / "wing.stl", tube(prism(outline, np.array([0.0, 50.0, 100.0])))), 5)
+    assert mesh.volume == pytest.approx(20600.0) and form.volume == pytest.approx(20600.0)
+    said = " ".join(" ".join(self_check(form, mesh, 5)).split())
+    assert "NOT alike: the centre of the station at x 0 m is 0.379 m to port" in said  # 6 m² × 13 m / 206 m²
+    assert "offsets.csv was not written" in write_offsets(form, tmp_path)
+    assert form.hydrostatics(5.0, SEA).bm == pytest.approx(20.0**2 / 12.0 / 5.0, rel=1e-6)
