@@ -41,7 +41,7 @@ def test_draughts_are_those_at_the_perpendiculars_asked_for(tmp_path):
         answer = CliRunner().invoke(hull, [*given, *more])
         told = [draught + slope * (65.0 - x) for x in (aft, fore)]
         assert f"aft {told[0]:.3f}, forward {told[1]:.3f} m" in answer.output
-        assert f"perpendiculars at {aft:g} and {fore:g} m, {fore - aft:g} m apart" in answer.output
+        assert f"at {aft:g} and {fore:g} m, {fore - aft:g} m apart" in answer.output
     for options, words in (
         (("--lbp", "175"), "--lbp: 175 m is no length of a hull whose stations reach over 130 m"),
         (("--lwl", "20"), "--lwl: 20 m is no length"),
