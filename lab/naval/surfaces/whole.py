@@ -78,9 +78,10 @@ def _sides(faces: np.ndarray) -> np.ndarray:
 
 def _edges(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Edges (e, 2), how many triangles each has (e,), and of each side of a triangle its edge (3 n,)."""
-    sides = np.sort(_sides(mesh.faces), axis=1)
-    edges, owner, times = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
-    return edges, times, owner.ravel()
+    low, high = np.sort(_sides(mesh.faces), axis=1).T
+    count = len(mesh.corners)
+    edges, owner, times = np.unique(low * count + high, return_inverse=True, return_counts=True)
+    return np.column_stack(np.divmod(edges, count)), times, owner.ravel()
 
 
 def _rims(mesh: Mesh) -> list[np.ndarray]:
@@ -164,7 +165,7 @@ def _outward(mesh: Mesh, pairs: np.ndarray) -> Mesh:
             turned[face] = turned[before] ^ ((before, face) in differs or (face, before) in differs)
         faces[turned] = faces[turned][:, ::-1]
         if ((turned[one] ^ turned[other]) != against).any():
-            raise LabError(f"{mesh.name}: the surface has no inside, as a Möbius band has none; draw it anew.")
+            raise LabError(f"{mesh.name}: the surface has no inside, as a Klein bottle has none; draw it anew.")
     found = Mesh(mesh.corners, faces, mesh.name)
     return found if found.volume > 0.0 else Mesh(mesh.corners, faces[:, ::-1], mesh.name)
 
@@ -180,12 +181,12 @@ def _refuse_bodies(mesh: Mesh, number: np.ndarray, bodies: int) -> None:
 
 
 def _point(point: np.ndarray) -> str:
-    return "({:.5g}, {:.5g}, {:.5g}) m".format(*(point + 0.0))
+    return "({:.5g}, {:.5g}, {:.5g}) m".format(*(np.round(point, 6) + 0.0))
 
 
 def _place(points: np.ndarray) -> str:
     """Where points (k, 3) lie."""
-    low, high = points.min(axis=0) + 0.0, points.max(axis=0) + 0.0
+    low, high = (np.round(one, 6) + 0.0 for one in (points.min(axis=0), points.max(axis=0)))
     spans = [
         f"{name} {a:.5g}" if f"{a:.5g}" == f"{b:.5g}" else f"{name} {a:.5g} to {b:.5g}"
         for name, a, b in zip("xyz", low, high, strict=True)
