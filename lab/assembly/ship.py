@@ -11,6 +11,7 @@ from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
 from lab.preset.sections import sea as seas
 from lab.preset.sections import ship as ships
+from lab.preset.units import show
 from solvers.machine.errors import Unavailable
 from solvers.motion.staggered import longest_step
 from solvers.ship.body import NOTHING, Body, bolted
@@ -28,6 +29,7 @@ from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random
 
 SLOWEST, FASTEST, FREQUENCIES = 0.08, 3.5, 48  # range of the hydrodynamic table in √(g/draught), and its length
 MEMORY_ORDER = 8  # states per mode
+QUARTER = 0.5 * pi  # rad: the largest angle of loll
 
 
 def make_waves(given: seas.Waves | None, water: Water) -> Waves | None:
@@ -71,8 +73,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
     section, about = immersible(given), given.about
     mass = water.density * float(section.immersion(given.heave, 0.0).area)
     body = _body(given, section, mass, wet)
-    if righting(section, body, water) <= 0.0:
-        raise LabError("ship.gravity_height: so high she does not float upright; lower it.")
+    roll = _rest(given, section, body, water)
     waves = make_waves(sea, water)
     table = table_of(given, water, _frequencies(given, water, waves))
     load = Floating(section, water, about)
@@ -80,6 +81,8 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         rest, scattered = (given.heave, 0.0), given.excitation == "diffraction"
         load = floating_in_waves(section, water, about, waves, table, rest, scattered)
         if given.excitation == "wave-slope":
+            if roll:
+                raise LabError("ship.excitation: wave-slope acts by GM, which is negative here; take diffraction.")
             load = _by_slope(load, table, righting(section, body, water))
     ship = Ship(
         body,
@@ -90,12 +93,14 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         gravity=water.gravity,
         rig=_rig(given),
     )
+    heave = _heave(ship, given, roll)
     if given.roll_period:
         one = table.at([2.0 * pi / given.roll_period])
-        ship = replace(ship, body=inertia_for_roll(ship, section, water, given.heave, one))
-    ship = replace(ship, damping=_damping(given, ship, water, table))
+        ship = replace(ship, body=inertia_for_roll(ship, section, water, heave, one, roll))
+    frequency, inertia = natural_roll(ship, heave, table, roll)
+    ship = replace(ship, damping=_damping(given, frequency, inertia))
     if given.radiation == "memory":
-        require_damped(ship, start(ship, given.heave))
+        require_damped(ship, start(ship, heave, roll))
     limits = (-given.capsize, given.capsize) if given.capsize else (-inf, inf)
     openings = given.flooding_points
     vessel = Vessel(
@@ -103,15 +108,45 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         given.hold,
         length=given.length or 1.0,
         laden=True,
-        heel=given.heel,
-        release=given.release,
+        heel=given.heel or roll,
+        release=given.release if given.heel or given.release or not roll else 2.0 * pi / frequency,
         limits=limits,
         handover=given.coupling_step if given.coupling == "as_K" else None,
         openings=openings,
+        rest=roll,
     )
     if given.coupling == "as_K":
         _require_stable(given.coupling_step, vessel)
     return vessel
+
+
+def _rest(given: ships.Ship, section: Immersible, body: Body, water: Water) -> float:
+    """The roll (rad) at which she rests in calm water: upright, or her angle of loll. Raises LabError without one."""
+    if righting(section, body, water) > 0.0:
+        return 0.0
+    ship = Ship(
+        body,
+        Floating(section, water, given.about),
+        Radiation(np.zeros((3, 3)), np.zeros((3, 3))),
+        given.about,
+        free=ships.FREEDOM[given.freedom],
+        gravity=water.gravity,
+    )
+    vessel, largest = Vessel(ship, given.hold), min(given.capsize or QUARTER, QUARTER)
+    found = vessel.angle_of_loll(largest)
+    if found is None:
+        most = show(largest, "rad")
+        raise LabError(f"ship.gravity_height: so high she neither stands upright nor lolls by up to {most}; lower it.")
+    openings = [(side * y, z) for y, z in given.flooding_points for side in (1.0, -1.0)]  # she may loll either way
+    if openings and ship.load.depths(openings, np.array(vessel.pose(NOTHING, found)), 0.0).max() > 0.0:
+        lolls = show(found, "rad")
+        raise LabError(f"ship.gravity_height: so high she lolls to {lolls}, with an opening under water; lower it.")
+    return found
+
+
+def _heave(ship: Ship, given: ships.Ship, roll: float) -> float:
+    """Heave (m) of the hull's origin at rest at a roll (rad)."""
+    return Vessel(ship, given.hold).heave(NOTHING, roll) if roll else given.heave
 
 
 def _require_stable(step: float, vessel: Vessel) -> None:
@@ -205,22 +240,27 @@ def _radiation(given: ships.Ship, table, sea: seas.Waves | None, deep: bool) -> 
     return remembered(table, fit_memory(table, MEMORY_ORDER, deep))
 
 
-def natural_roll(ship: Ship, heave: float, table) -> tuple[float, float]:
-    """Angular frequency (rad/s) of roll alone about P, and the moment of inertia (kg m) with added mass there."""
+def natural_roll(ship: Ship, heave: float, table, roll: float = 0.0) -> tuple[float, float]:
+    """Angular frequency (rad/s) of roll alone about P, and the moment of inertia (kg m) with added mass there.
+
+    About a rest at a heave (m) and a roll (rad). The table is that of the upright hull; of a slower or a faster roll it
+    gives the added mass at its end.
+    """
     load = ship.load
     frequency = 2.0
     for _ in range(50):
-        whole = impedance(ship, load.section, load.water, heave, table.at([frequency]))[0, 2, 2].real
-        own = ship.inertia(0.0)[2, 2] - ship.radiation.added_mass[2, 2] + table.at([frequency]).added_mass[0, 2, 2]
+        at = float(np.clip(frequency, table.frequency[0], table.frequency[-1]))
+        whole = impedance(ship, load.section, load.water, heave, table.at([at]), roll)[0, 2, 2].real
+        own = ship.inertia(roll)[2, 2] - ship.radiation.added_mass[2, 2] + table.at([at]).added_mass[0, 2, 2]
         if own <= 0.0:
             raise Unavailable("her inertia in roll, added mass included, is not positive: look at her lengths' units.")
-        spring = whole + frequency**2 * own
+        spring = whole + at**2 * own
         frequency = sqrt(max(spring, 1e-9) / own)
     return frequency, float(own)
 
 
-def _damping(given: ships.Ship, ship: Ship, water: Water, table) -> RollDamping:
-    frequency, inertia = natural_roll(ship, given.heave, table)
+def _damping(given: ships.Ship, frequency: float, inertia: float) -> RollDamping:
+    """Viscous damping of a ship with a natural frequency of roll (rad/s) and an inertia (kg m)."""
     if given.linear_damping is not None:
         return RollDamping(given.linear_damping, given.quadratic_damping * inertia)
     return RollDamping(2.0 * given.damping * frequency * inertia, given.quadratic_damping * inertia)

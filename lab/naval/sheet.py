@@ -128,7 +128,16 @@ def _gravity(condition: Condition) -> list[tuple[str, str]]:
         ("GM solid", f"{condition.solid:.3f} m"),
         ("free surfaces", f"{condition.free_surface:.4g} t m / {condition.displacement:.5g} t = {rise:.3f} m"),
         ("GM fluid", f"{condition.metacentric_height:.3f} m"),
+        *_lolled(condition),
     ]
+
+
+def _lolled(condition: Condition) -> list[tuple[str, str]]:
+    """A row on where a ship lies that does not stand upright."""
+    if condition.metacentric_height > 0.0:
+        return []
+    angle = condition.levers.equilibrium()
+    return [("lolls", "nowhere: she capsizes" if angle is None else f"to {degrees(angle)}, as GM is negative")]
 
 
 def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:

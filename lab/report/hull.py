@@ -137,42 +137,45 @@ def _judged(form: Form, water: Water, asked: Asked, holds: dict[str, Hold], fold
     }
     if grain:
         written["grain"] = _stowed(grain, ship)
-    return [*_facts(ship), "", *aligned(rows), *_unjudged(ship)], written
+    told = facts(ship)
+    width = max(len(name) for name, _ in told)
+    lines = [f"  {name:<{width}}  {text}" for name, text in told]
+    return [*lines, "", *aligned(rows), *_unjudged(ship)], written
 
 
-def _facts(ship: Loaded) -> list[str]:
-    """Lines on how she floats and what limits her heel."""
+def facts(ship: Loaded) -> list[tuple[str, str]]:
+    """How she floats and what limits her heel, in rows of a name and a text."""
     total, (aft, fore, _), upright = ship.weights, ship.draughts, ship.upright
     rise = total.fluid_vcg - total.vcg
     trim = f"{abs(aft - fore):.3f} m by the {'stern' if aft >= fore else 'bow'}"
-    facts = [
+    rows = [
         ("weights", f"{total.mass:.5g} t at {total.lcg:.3f} m, {total.tcg:.3f} m to starboard, KG {total.vcg:.3f} m"),
         ("draught", f"aft {aft:.3f}, forward {fore:.3f} m; trim {trim}"),
         ("KB, BM, KM", f"{upright.kb:.3f}, {upright.bm:.3f}, {upright.km:.3f} m"),
         ("GM solid", f"{ship.solid:.3f} m"),
         ("free surfaces", f"{total.free_surface:.4g} t m / {total.mass:.5g} t = {rise:.3f} m"),
         ("GM fluid", f"{ship.metacentric_height:.3f} m"),
-        ("list", f"{_list(ship.list)}; judged to {ship.side}"),
+        ("list", f"{_list(ship)}; judged to {ship.side}"),
         ("deck edge under", sheet.degrees(ship.deck, "not up to 90 deg")),
         ("downflooding", _downflooding(ship.flooding)),
         ("levers vanish", sheet.vanishing(ship.levers)),
     ]
     if ship.grain:
         moment = sum(hold.heeling for hold in ship.grain)
-        facts.append(("grain", f"{moment:.5g} t m / {total.mass:.5g} t: arm {ship.assumed_arm:.3f} m upright"))
-    width = max(len(name) for name, _ in facts)
-    return [f"  {name:<{width}}  {text}" for name, text in facts]
+        rows.append(("grain", f"{moment:.5g} t m / {total.mass:.5g} t: arm {ship.assumed_arm:.3f} m upright"))
+    return rows
 
 
 def _downflooding(angle: float | None) -> str:
     return "no opening is given" if angle is None else sheet.degrees(angle, "not up to 90 deg")
 
 
-def _list(angle: float | None) -> str:
-    """A list (rad), positive starboard down."""
-    if angle is None:
+def _list(ship: Loaded) -> str:
+    """Her list, positive starboard down."""
+    if ship.list is None:
         return "none: she comes to rest nowhere"
-    return f"{sheet.degrees(abs(angle))} to {'port' if angle < 0.0 else 'starboard'}"
+    why = ", a loll: her GM is negative" if ship.metacentric_height < 0.0 else ""
+    return f"{sheet.degrees(abs(ship.list))} to {'port' if ship.list < 0.0 else 'starboard'}{why}"
 
 
 def _unjudged(ship: Loaded) -> list[str]:

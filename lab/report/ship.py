@@ -46,6 +46,8 @@ def describe(
     if slab is not None:
         thick = f"a slab {show(slab[0], 'm')} thick: its load counts {slab[1]:.4g} times a metre"
         rows = [("with her cargo", floats), ("cargo", thick)]
+    if vessel.rest:
+        rows.append(("lolls", _lolls(given, vessel)))
     rows += [
         ("free in", given.freedom.replace("-", ", ") + f", about her axis, {axis_place(given)}"),
         (
@@ -71,6 +73,12 @@ def describe(
     if given.scale:
         rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
     return rows
+
+
+def _lolls(given: ships.Ship, vessel: Vessel) -> str:
+    """Where she comes to rest, and how she gets there."""
+    to = f"to {show(vessel.rest, 'rad')} in calm water, either side, as her GM is negative"
+    return to if given.heel else f"{to}; heeled there, to port, until {show(vessel.release, 's')}"
 
 
 def _radiated(given: ships.Ship, memory) -> str:

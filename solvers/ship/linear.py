@@ -53,14 +53,16 @@ def response(
     return found
 
 
-def inertia_for_roll(ship: Ship, section: Immersible, water: Water, heave: float, table: Hydrodynamics) -> Body:
+def inertia_for_roll(
+    ship: Ship, section: Immersible, water: Water, heave: float, table: Hydrodynamics, roll: float = 0.0
+) -> Body:
     """The ship's body with the inertia whose undamped natural roll frequency is the only one of a table about P.
 
     There the impedance of roll, with the other free motions eliminated, has no real part. Raises `Unavailable` if the
     inertia would have to be negative: the frequency is too high for the righting moment.
     """
     body = ship.body
-    whole = impedance(replace(ship, body=replace(body, inertia=0.0)), section, water, heave, table)[0]
+    whole = impedance(replace(ship, body=replace(body, inertia=0.0)), section, water, heave, table, roll)[0]
     others = np.array([k for k in np.flatnonzero(ship.free) if k != ROLL], dtype=int)
     seen = whole[ROLL, ROLL]
     if len(others):

@@ -7,12 +7,13 @@ import numpy as np
 
 from solvers.machine.errors import Unavailable
 from solvers.ship.body import NOTHING, Body, bolted
-from solvers.ship.hydrostatics import balanced_heave, turned
+from solvers.ship.hydrostatics import SEARCH, balanced_heave, turned
 from solvers.ship.linear import oscillations
 from solvers.ship.motion import HEAVE, Ship, start
 
 LONGEST_INTERVAL = 1e-3  # s
 STEPS_A_PERIOD = 200  # of the ship's fastest oscillation, where no cargo asks for shorter steps
+NEAR = 1e-3  # of the search's step: where the search for an angle of loll begins
 SHORTEST_MEMORY = 0.02  # of the memory's shortest time scale: the Runge–Kutta error per interval is then below 1e-10
 
 
@@ -23,10 +24,11 @@ class Vessel:
     `hold` is the tank's origin in the hull's frame (m). With `laden` the ship's body is hull and cargo together at the
     release, and the hull is that body less the cargo; otherwise the body is the hull alone. The ship is released at
     `release` (s). Until then it is heeled smoothly to `heel` (rad) about its axis, which moves only in heave, and only
-    if the ship is free to heave. The ship has capsized when its roll leaves `limits` (rad), and floods when one of its
-    `openings` (m, hull's frame) is below the local water surface. `height` (m) is that of the hull's origin when
-    upright, None: as the ship floats in equilibrium. With a `handover` (s) she takes steps of that length with a load
-    that is extrapolated (`motion.as_k`); None: she answers to the load of each instant (`motion.afloat`).
+    if the ship is free to heave. In calm water it rests at a roll of `rest` (rad), cargo and all. The ship has capsized
+    when its roll leaves `limits` (rad), and floods when one of its `openings` (m, hull's frame) is below the local
+    water surface. `height` (m) is that of the hull's origin when upright, None: as the ship floats in equilibrium. With
+    a `handover` (s) she takes steps of that length with a load that is extrapolated (`motion.as_k`); None: she answers
+    to the load of each instant (`motion.afloat`).
     """
 
     ship: Ship
@@ -39,6 +41,7 @@ class Vessel:
     height: float | None = None
     handover: float | None = None
     openings: tuple[tuple[float, float], ...] = ()
+    rest: float = 0.0
 
     @property
     def interval(self) -> float:
@@ -54,7 +57,7 @@ class Vessel:
         """The shortest period (s) of small motions about her rest in calm water, with whatever is fixed to her."""
         if not any(self.ship.free):
             return np.inf
-        rest = start(self.ship, self.heave(NOTHING, 0.0))
+        rest = start(self.ship, self.heave(NOTHING, self.rest), self.rest)
         return 2.0 * np.pi / np.abs(oscillations(self.ship, rest)).max(initial=1e-9)
 
     @property
@@ -123,3 +126,27 @@ class Vessel:
             return balanced_heave(load.section, self.whole(cargo).loading, load.water, roll)
         upright = balanced_heave(load.section, self.whole(cargo).loading, load.water, 0.0)
         return upright + about[1] - float(turned(about, roll)[1])
+
+    def righting_moment(self, roll: float) -> float:
+        """Moment (N, per metre) about her axis against a roll (rad), at rest in calm water with all that is fixed."""
+        ship, pose = self.ship, np.array(self.pose(NOTHING, roll))
+        weight = ship.body.mass * ship.gravity * float(ship.lever(roll)[0])
+        return weight - float(ship.load.still.force(pose, 0.0)[2])
+
+    def angle_of_loll(self, largest: float) -> float | None:
+        """The roll (rad), to port, at which she comes to rest from upright in calm water; None: not up to `largest`.
+
+        Of a wall-sided ship with G amidships GZ = sin φ (GM + ½ BM tan² φ) (Scribanti), which with a negative GM is
+        zero, and rises, at tan φ = √(−2 GM/BM). Here it is where `righting_moment` is.
+        """
+        from scipy.optimize import brentq  # slow to import
+
+        before = NEAR * SEARCH
+        if self.righting_moment(before) >= 0.0:
+            return 0.0
+        for after in np.arange(SEARCH, largest + SEARCH, SEARCH):
+            if self.righting_moment(after) > 0.0:
+                found = float(brentq(self.righting_moment, before, after, xtol=1e-12))
+                return found if found <= largest else None
+            before = after
+        return None

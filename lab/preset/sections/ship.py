@@ -47,7 +47,8 @@ class Ship:
     The hull is a box of `breadth` and `height` with the origin at the middle of its keel, or an `outline` with corners
     in the hull's own axes. A box may have a `hatch`: its coaming keeps water out as sides do, and its upper edges are
     openings. Sway and heave are the motions of her axis from its position at rest (`axis_motion`), in equations,
-    recordings, figures and pictures; she is heeled about it. `damping` and `quadratic_damping` are those of
+    recordings, figures and pictures; she is heeled about it. With a negative GM she lolls, and ω₀ is that of small
+    rolls about her angle of loll. `damping` and `quadratic_damping` are those of
     φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `hydrodynamics` changes what is linear in waves and motion. Buoyancy is that of her
     section times `length`, or with `offsets` of her whole hull, on an even keel. The default of `repose` is that of the
     source's acetate, the first of the critical angles that it found by tilting (Spandonidis 2016, section 7.1).
@@ -117,8 +118,18 @@ class Ship:
         Doc("Linear roll damping, moment over rate per metre of length, in place of `damping`."),
     ] = None
     quadratic_damping: Annotated[float, Interval(ge=0), Doc("Quadratic roll damping b, per rad.")] = 0.0
-    heel: Annotated[float, Unit("rad"), Interval(ge=-pi, le=pi), Doc("Heel at the start, positive to port.")] = 0.0
-    release: Annotated[float, Unit("s"), Interval(ge=0), Doc("When she is let go, heeled slowly until then.")] = 0.0
+    heel: Annotated[
+        float,
+        Unit("rad"),
+        Interval(ge=-pi, le=pi),
+        Doc("Heel at the start, positive to port; 0: as she rests, upright or at her angle of loll."),
+    ] = 0.0
+    release: Annotated[
+        float,
+        Unit("s"),
+        Interval(ge=0),
+        Doc("When she is let go, heeled slowly until then; one that lolls after a period of roll, if this is 0."),
+    ] = 0.0
     capsize: Annotated[
         Annotated[float, Unit("rad"), Interval(gt=0)] | None,
         Doc("Roll at which she counts as capsized and the run ends; false: never."),
