@@ -13,7 +13,8 @@ class Line:
 
     `source` says where the reference comes from: a closed form, an integration apart from the solver, a publication.
     The error is relative to the reference, or where `relative` is false a difference; `reason` says why the
-    `tolerance` is what it is. Raises ValueError for an error relative to zero.
+    `tolerance` is what it is. With `at_least` no value above the reference is an error. Raises ValueError for an error
+    relative to zero.
     """
 
     quantity: str
@@ -24,6 +25,7 @@ class Line:
     reason: str
     unit: str = ""
     relative: bool = True
+    at_least: bool = False
 
     def __post_init__(self):
         if self.relative and self.reference == 0.0:
@@ -37,7 +39,8 @@ class Line:
     @property
     def error(self) -> float:
         """Signed error of the value against its reference."""
-        return self.value / self.reference - 1.0 if self.relative else self.value - self.reference
+        found = self.value / self.reference - 1.0 if self.relative else self.value - self.reference
+        return min(found, 0.0) if self.at_least else found
 
     @property
     def passed(self) -> bool:

@@ -138,7 +138,7 @@ def show(outcome: Outcome, console: Console) -> None:
 
 def _line(row: Mapping) -> Line:
     """The line that a row of verify.json tells of."""
-    known = {field.name: row[field.name] for field in fields(Line)}
+    known = {field.name: row.get(field.name, field.default) for field in fields(Line)}
     value, reference = (float("nan") if row[name] is None else row[name] for name in ("value", "reference"))
     return Line(**known | {"value": value, "reference": reference})
 
@@ -149,7 +149,8 @@ def cells(line: Line) -> tuple[str, ...]:
     error = _share(line.error) if line.relative else f"{line.error:.2g}{unit}"
     tolerance = _share(line.tolerance) if line.relative else f"{line.tolerance:.2g}{unit}"
     verdict = word(line.passed)
-    numbers = (f"{line.value:.6g}{unit}", f"{line.reference:.6g}{unit}")
+    least = "at least " if line.at_least else ""
+    numbers = (f"{line.value:.6g}{unit}", f"{least}{line.reference:.6g}{unit}")
     return line.quantity, *numbers, line.source, error, tolerance, line.reason, verdict
 
 

@@ -7,6 +7,7 @@ name in `lab.studies.reproduce.registry`.
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -16,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from lab.studies.reproduce import registry
 from lab.studies.reproduce.columns import Column, table
 from lab.studies.reproduce.compare import ALL, LAST, Claim, rows
-from lab.studies.reproduce.experiment import Experiment, Found, Told, Tolerance
+from lab.studies.reproduce.experiment import Experiment, Found, Kind, Told, Tolerance, all_against
 from lab.studies.reproduce.runs import Batch
 
 FOLDER = Path(__file__).parents[1] / "claims"
@@ -76,7 +77,8 @@ class Stated(Strict):
     `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `registry.FIGURES` by `by`,
     with its arguments; `columns` are those of a table of runs of water, or the name of
     columns that experiments share; `tell` is one of `registry.TELLS`, which gives
-    rows, figure and table. `needs` is the measured series without which it cannot be run (`lab.base.data`).
+    rows, figure and table. `needs` is the measured series without which it cannot be run (`lab.base.data`). `kind` is
+    that of all rows that have none of their own.
     """
 
     name: str
@@ -94,6 +96,7 @@ class Stated(Strict):
     figure: dict[str, object] = {}
     tell: str = ""
     needs: str = ""
+    kind: Kind | None = None
 
 
 class Source(Strict):
@@ -153,11 +156,12 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
 
     def tell(found: Found) -> Told:
         if stated.tell:
-            return registry.TELLS[stated.tell](found)
+            told = registry.TELLS[stated.tell](found)
+            return replace(told, rows=all_against(told.rows, stated.kind))
         draw = {key: value for key, value in stated.figure.items() if key != "by"}
         figure = registry.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
         further = table(columns, found) if columns else ()
-        return Told(rows(claims, found, source.tolerance), figure, further)
+        return Told(all_against(rows(claims, found, source.tolerance), stated.kind), figure, further)
 
     told = "name", "title", "section", "states", "lost", "why", "question", "needs"
     words = {name: getattr(stated, name) for name in told}
@@ -178,9 +182,11 @@ def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], sou
         "figure": ([stated.figure.get("by", "")], registry.FIGURES),
         "function": ([stated.tell], registry.TELLS),
     }
-    for kind, (used, known) in names.items():
+    for what, (used, known) in names.items():
         if missing := {*filter(None, used)} - {*known}:
-            raise ValueError(f"{stated.name}: there is no {kind} {', '.join(sorted(missing))}")
+            raise ValueError(f"{stated.name}: there is no {what} {', '.join(sorted(missing))}")
+    if bare := [one.says for one in claims if one.compare != "told" and one.judged and not (one.kind or stated.kind)]:
+        raise ValueError(f"{stated.name}: {bare[0]}: say by `kind` what it is held against")
 
 
 def _points(runs: Mapping[str, Run]) -> set[str]:

@@ -28,7 +28,19 @@ from lab.studies.reproduce.estimates import (
     scatters_more,
     together,
 )
-from lab.studies.reproduce.experiment import Found, Row, Tolerance, alone, counted, held, less, observed, stated
+from lab.studies.reproduce.experiment import (
+    Found,
+    Kind,
+    Row,
+    Tolerance,
+    all_against,
+    alone,
+    counted,
+    held,
+    less,
+    observed,
+    stated,
+)
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.rolls import end
 
@@ -52,7 +64,8 @@ class Claim(BaseModel):
     within a tolerance or a `share`; most beds have or ship's `capsizes`; the first `scatters` most. `tolerance` says
     how words of the source are read, `shows` how ours are written, `given` is a number that a function of
     `registry.DERIVED` needs, or a list within a list of them. `judged`: with false a verdict on a trend is told as a
-    word that does not count, and a value has a difference and no verdict.
+    word that does not count, and a value has a difference and no verdict. `kind`: what it is held against, where that
+    is not its experiment's.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -62,7 +75,7 @@ class Claim(BaseModel):
     runs: str | list[str] = ALL
     at: str | list[str] = ""
     given: float | list[float] | list[list[float]] | None = None
-    compare: Annotated[str, AfterValidator(lambda word: _one_of(word, KINDS))] = "told"
+    compare: Annotated[str, AfterValidator(lambda word: _one_of(word, COMPARISONS))] = "told"
     value: float | None = None
     within: str = ""
     share: float | None = None
@@ -70,6 +83,7 @@ class Claim(BaseModel):
     tolerance: str = ""
     shows: str = ""
     judged: bool = True
+    kind: Kind | None = None
     by: str = ""
 
 
@@ -98,10 +112,11 @@ def rows(claims: Sequence[Claim], found: Found, tolerances: Mapping[str, Toleran
     told: list[Row] = []
     for claim in claims:
         if claim.by:
-            told += registry.ROWS[claim.by](found)
+            told += all_against(registry.ROWS[claim.by](found), claim.kind)
         elif numbers := _numbers(claim, found):
             named = claim.model_copy(update={"says": claim.says.replace("{run}", numbers[0].run)})
-            told.append(KINDS[claim.compare](named, numbers, _tolerance(claim, numbers, tolerances)))
+            row = COMPARISONS[claim.compare](named, numbers, _tolerance(claim, numbers, tolerances))
+            told.append(row.against(claim.kind))
     return told
 
 
@@ -256,7 +271,7 @@ def _scatters(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Ro
     return observed(claim.says, claim.source, stds, most, claim.tolerance)
 
 
-KINDS = {
+COMPARISONS = {
     "told": _told,
     "value": _value,
     "range": _range,

@@ -1,7 +1,8 @@
 """An experiment of the source: its runs, and the comparison of their results with the source's statements."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
 
 from matplotlib.figure import Figure
 
@@ -13,12 +14,25 @@ from lab.studies.reproduce.runs import Batch, Outcome
 Found = Mapping[str, Sequence[Outcome]]  # outcomes of runs by name, one for each point of a grid
 
 
+class Kind(StrEnum):
+    """What a statement is held against, the strongest evidence first.
+
+    A `sign` is a direction, an order, a bound or whether something happens: much wrong can hide behind one that agrees.
+    """
+
+    MEASURED = "measured"
+    OTHER_CODE = "other code"
+    OWN_REFERENCE = "own reference"
+    SIGN = "sign"
+
+
 @dataclass(frozen=True)
 class Row:
     """One line of the comparison.
 
     `apart` is our number minus the source's, with its interval; `tolerance` the allowed difference and its origin;
-    `verdict` is None if the source states nothing comparable.
+    `verdict` is None if the source states nothing comparable, or nothing that could fail; `kind`: what it is held
+    against, None of a row without a verdict.
     """
 
     quantity: str
@@ -27,6 +41,16 @@ class Row:
     apart: str
     tolerance: str
     verdict: Verdict | None
+    kind: Kind | None = None
+
+    def against(self, kind: Kind | None) -> "Row":
+        """The row with its kind, or this one where it has none and a verdict."""
+        return replace(self, kind=(self.kind or kind) if self.verdict else None)
+
+
+def all_against(rows: Iterable[Row], kind: Kind | None) -> list[Row]:
+    """Rows that are of one kind, but for those that have their own."""
+    return [row.against(kind) for row in rows]
 
 
 @dataclass(frozen=True)

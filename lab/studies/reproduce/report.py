@@ -15,7 +15,7 @@ from lab.report.page import render, save_figure
 from lab.report.plots import STYLE
 from lab.studies.reproduce.claims import reports
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.experiment import Experiment, Row
+from lab.studies.reproduce.experiment import Experiment, Kind, Row
 from lab.studies.reproduce.findings import Finding, asked, read_findings, write_findings
 from lab.studies.reproduce.runs import Outcome, outcomes
 
@@ -49,6 +49,7 @@ def write_page(
     """Write the page from findings, those that differ most first; returns its file."""
     told = sorted(findings, key=lambda one: _badness(findings[one].rows), reverse=True)
     missing = [one for one in experiments if one not in findings]
+    rows = [row for finding in findings.values() for row in finding.rows]
     less = reports()[name].less.replace("{draft}", LEVELS["draft"].error)
     return render(
         out / f"{page_name(name, quick)}.md",
@@ -56,7 +57,8 @@ def write_page(
         title=reports()[name].title,
         command=command_of(name, quick),
         date=date.today(),
-        counts=_counts([row for finding in findings.values() for row in finding.rows]),
+        counts=_counts(rows),
+        kinds=[[kind, *_counts([row for row in rows if row.kind is kind])] for kind in Kind],
         source=reports()[name].source,
         level=f"{100.0 * LEVEL:g}",
         limits=QUICK if quick else less,
@@ -129,7 +131,11 @@ def _overview(experiment: Experiment, finding: Finding | None, quick: bool) -> l
 
 
 def _cells(rows: Sequence[Row]) -> list[list[str]]:
-    return [[row.quantity, row.source, row.ours, row.apart, row.tolerance, LOUD[row.verdict]] for row in rows]
+    """The cells of a section's table."""
+    return [
+        [row.quantity, row.source, row.ours, row.apart, row.tolerance, row.kind or "", LOUD[row.verdict]]
+        for row in rows
+    ]
 
 
 def _picture(path: Path, experiment: Experiment, found: Mapping[str, list[Outcome]]) -> str:

@@ -240,14 +240,21 @@ def test_values_without_scatter_are_judged_directly():
 def test_a_report_counts_its_verdicts_and_shows_each_with_its_tolerance(tmp_path):
     beds = {"near": [20.0, 22.0, 21.0, 21.0], "far": [30.0, 31.0, 30.0, 31.0], "wide": [10.0, 32.0, 15.0, 27.0]}
     rows = [stated(name, 20.0, over_worlds(angles, "deg"), BY_EYE) for name, angles in beds.items()]
-    finding = Finding("asked", [*rows, observed("seen", "", "this", None)], (), 1.0, 1.0, "", "", Made("0.1.0"))
+    rows = [row.against(kind) for row, kind in zip(rows, ("measured", "measured", "sign"), strict=True)]
+    rows = [*rows, observed("seen", "", "this", None).against("measured")]
+    finding = Finding("asked", rows, (), 1.0, 1.0, "", "", Made("0.1.0"))
     tried = Experiment(
         "tried", "A trial", "0.0", "20 deg.", lambda quick: {}, lambda found: Told([]), "much", ("", 1.0)
     )
     text = report.write_page("granular", {"tried": tried}, {"tried": finding}, tmp_path, quick=False).read_text()
     assert "Of 3 statements held against the source 1 agree, 1 differ, and of 1 these beds cannot tell." in text
+    assert "| measured | 1 | 1 | 0 |" in text and "| sign | 0 | 0 | 1 |" in text  # what has no verdict does not count
     assert "| A trial | 0.0 | 1 | 1 | 1 |" in text
-    for name, verdict in (("near", "agrees"), ("far", "**differs**"), ("wide", "cannot tell")):
+    for name, verdict in (
+        ("near", "measured | agrees"),
+        ("far", "measured | **differs**"),
+        ("wide", "sign | cannot tell"),
+    ):
         line = next(line for line in text.splitlines() if line.startswith(f"| {name} |"))
         assert line.endswith(f"| 3 deg: read off a picture | {verdict} |") and "(95 %)" in line
 
@@ -291,6 +298,7 @@ tolerance.bed = { within = 2.0, origin = "by eye" }
 name = "trial"
 title = "A trial"
 section = "1"
+kind = "measured"
 states = "A at 20 and B at 30 deg, later than A."
 lost = "nothing"
 shown = { run = "A", at = 0.5 }
@@ -314,6 +322,7 @@ says = "later"
 of = "critical_angle"
 runs = ["B", "A"]
 at = ["0.3", ""]
+kind = "sign"
 compare = "fall"
 tolerance = "each step above zero"
 """
@@ -334,10 +343,18 @@ def test_a_claim_in_a_file_is_run_and_judged_by_its_number_and_tolerance():
     }
     rows = {row.quantity: row for row in trial.tell(found).rows}
     assert [rows[name].verdict for name in ("A slides", "B slides", "later")] == ["agrees", "differs", "agrees"]
+    assert [rows[name].kind for name in ("A slides", "B slides", "later")] == ["measured", "measured", "sign"]
     assert rows["B slides"].source == "30 deg" and rows["B slides"].tolerance == "2 deg: by eye"
     assert [row.quantity for row in trial.tell({"A": found["A"]}).rows] == ["A slides"]  # a report may lack B
     unjudged = read(CLAIMS.replace('within = "bed"', 'within = "bed"\njudged = false'))["trial"].tell(found).rows[1]
-    assert unjudged.verdict is None and unjudged.apart == rows["B slides"].apart != ""
+    assert unjudged.verdict is None and unjudged.apart == rows["B slides"].apart != "" and unjudged.kind is None
+
+
+def test_a_claim_that_is_judged_says_what_it_is_held_against():
+    with pytest.raises(ValueError, match="trial: A slides: say by `kind` what it is held"):
+        read(CLAIMS.replace('kind = "measured"\n', ""))
+    with pytest.raises(ValueError, match="guess"):
+        read(CLAIMS.replace('kind = "measured"', 'kind = "guess"'))
 
 
 @pytest.mark.parametrize(
@@ -368,11 +385,12 @@ def test_columns_that_no_set_has_are_refused():
 
 @pytest.mark.parametrize("report_name", reports())
 def test_every_verdict_of_the_shipped_reports_has_its_tolerance(report_name):
-    """And no number of one bed has a ±."""
+    """And what it is held against; no number of one bed has a ±."""
     rows = [Row(**row) for finding in kept_results(report_name).values() for row in finding["rows"]]
     assert rows
     for row in rows:
         assert row.tolerance or row.verdict is None, row
+        assert bool(row.kind) == bool(row.verdict), row
         assert not re.search(r"±[^(;,]*\(1 bed", row.ours), row
         assert "±" not in row.ours or re.search(r"beds|\(s\.e\.\)", row.ours), row
 

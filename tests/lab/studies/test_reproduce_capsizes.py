@@ -60,6 +60,16 @@ def test_values_derived_from_scans():
     assert [_rows("so", early, early)[k].verdict for k in (2, 4)] == [Verdict.DIFFERS] * 2
 
 
+def test_that_frozen_cargo_does_not_capsize_her_says_nothing_where_loose_cargo_does_not_either():
+    """Loose cargo capsizes her in 30 mm only: in 17 and 19 mm nothing does."""
+    sizes, frequencies = np.array([10.0, 17.0, 19.0, 30.0]), np.array([4.4, 4.6])
+    shares = np.array([[0.0, 0.0]] * 3 + [[1.0, 1.0]])
+    rolls = np.full((4, 2), 9.0)
+    loose, frozen = (Scan(sizes, frequencies, rolls, one) for one in (shares, np.zeros((4, 2))))
+    kept = _rows("so", loose, frozen)[4]
+    assert kept.verdict is None and kept.ours.startswith("none up to 30 mm; not judged")
+
+
 def test_an_agreeing_peak_does_not_hide_another_roll_angle():
     """26 deg at 4.4 rad/s, where the source has 36."""
     one = Scan(np.array([10.0, 19.0]), np.array([4.4, 4.6]), np.array([[26.0, 9.0]] * 2), np.zeros((2, 2)))

@@ -100,6 +100,8 @@ def test_the_map_has_the_lowest_capsizing_waves_with_loose_and_frozen_cargo(monk
         "in 1 of 4 waves, from 25 mm on",
     ]
     assert [row.verdict for row in told.rows] == [None, None, Verdict.AGREES]
+    higher = low_sides.frozen_row(runs[1:])  # nothing is lost up to 19 mm: nothing to hold
+    assert higher.verdict is None and "not judged" in higher.ours
     points = [line for line in told.figure.axes[0].lines if len(line.get_xdata())]
     assert [(line.get_marker(), line.get_fillstyle()) for line in points] == [
         ("o", "left"),

@@ -4,9 +4,22 @@ import numpy as np
 import pytest
 
 from lab.assembly.scene import vessels
+from lab.measures.value import over_worlds
 from lab.preset.find import load
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.ships.section import compared, counted_within, explained, window
+from lab.studies.reproduce.figures import leading_number
+from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships.rolls import FREQUENCY
+from lab.studies.reproduce.ships.section import (
+    HEIGHT,
+    MEASURED,
+    compared,
+    counted_within,
+    explained,
+    section_amplitudes,
+    shifted,
+    window,
+)
 from lab.studies.reproduce.ships.section_terms import (
     MEASUREMENTS,
     PRESET,
@@ -67,6 +80,33 @@ def test_windows_lie_between_the_ramp_and_the_returning_waves():
     """As the measured ones, to a second or two."""
     for test in MEASUREMENTS[1:]:
         assert window(test.frequency)[0] == pytest.approx(test.window[0], abs=1.0)
+
+
+def test_other_windows_are_moved_by_up_to_a_period():
+    test = MEASUREMENTS[4]
+    period, windows = 2.0 * np.pi / test.frequency, shifted(test)
+    assert test.window in windows and len(windows) == len(set(windows)) == 10
+    assert min(end - begin for begin, end in windows) == pytest.approx(np.ptp(test.window) - 2.0 * period)
+    assert max(abs(begin - test.window[0]) for begin, _ in windows) == pytest.approx(period)
+
+
+@pytest.mark.slow
+def test_off_the_resonance_the_window_hardly_matters():
+    test = MEASUREMENTS[4]
+    found = potential_flow().in_windows(test, shifted(test))
+    assert found == pytest.approx(np.tile(potential_flow().sailed(test), (len(found), 1)), rel=0.05)
+
+
+def test_an_amplitude_of_the_section_agrees_within_a_fifth_of_the_measured_and_no_more():
+    """Small motions, too: 0.307 is met by 0.36 and not by 0.40, which is no more than 0.1 away."""
+    at = "7.004 rad/s"
+    slope = np.degrees(1e-3 * HEIGHT * leading_number(at) ** 2 / 9.81)
+    for share, verdict in ((1.17, Verdict.AGREES), (1.3, Verdict.DIFFERS)):
+        sway, heave, roll = share * np.array(MEASURED[at])
+        sizes = {"sway_amplitude": HEIGHT * sway, "heave_amplitude": HEIGHT * heave, "roll_fundamental": slope * roll}
+        measures = {name: over_worlds([value], "1") for name, value in sizes.items()}
+        rows = section_amplitudes({"section": [Outcome({FREQUENCY: at}, None, "complete", measures, {})]})
+        assert [row.verdict for row in rows] == [verdict] * 3
 
 
 def test_verdicts_and_explained_shares():

@@ -43,6 +43,14 @@ def test_water_at_rest_in_a_heeled_tank_weighs_on_it():
     assert np.abs(tank.rates(held, state)[0]).max() < 1e-12  # m²/s²
 
 
+def test_water_at_rest_presses_on_the_wall_by_its_depth_over_the_height():
+    tank = ShallowTank(WIDTH, DEPTH, ABOVE, GRAVITY, 60)
+    assert tank.wall_pressure(UPRIGHT, tank.rest(), 0.03) == pytest.approx(GRAVITY * (DEPTH - 0.03))
+    assert tank.wall_pressure(UPRIGHT, tank.rest(), 0.1) == 0.0
+    times, pressures = tank.followed(lambda time, order: 0.0, 0.1, lambda now, state: state[0].mean())
+    assert times[0] == 0.0 and 0.0 < 0.1 - times[-1] < 0.01 and pressures == pytest.approx(DEPTH)
+
+
 @pytest.mark.parametrize("frequency", [1.6, 5.2])  # rad/s, below and above the first mode's 3.3
 def test_low_waves_in_a_tank_that_rolls_are_those_of_linear_theory(frequency):
     """η = E sin kx sin ωt with ω = k √(g D) and E = −φ₀ (g − ω² d) D k/(ω² cos ½ k b), from its own state on."""

@@ -77,6 +77,11 @@ def test_no_order_is_told_of_one_error_or_of_noise():
     assert line.value == pytest.approx(1.0)
     (line,) = order_line("it", [2.0, 1.0], [0.1, 0.1], 0.01)
     assert not line.passed  # what does not converge fails
+    (line,) = order_line("the decay between two fluids", [2.0, 1.0], [0.08, 0.146], 0.01)
+    assert not line.passed and line.value < 0.0  # and what grows
+    assert order_line("it", [2.0, 1.0], [0.8, 0.1], 0.01)[0].passed  # a third order is no error
+    unsure = order_line("it", [2.0, 1.0], [0.09, 0.05], 0.01)[0]  # 0.85 ± 0.45
+    assert unsure.passed and unsure.tolerance == pytest.approx(0.31 / np.log(2.0), rel=0.01)
 
 
 def test_the_axes_of_a_drop_are_those_of_the_literature():

@@ -12,7 +12,7 @@ from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW, canvas
 from lab.studies.reproduce.estimates import surely
-from lab.studies.reproduce.experiment import EXACT, Told, observed
+from lab.studies.reproduce.experiment import EXACT, Kind, Told, observed
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.fixed_axis import roll_together
@@ -131,7 +131,8 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
         ends = "; ".join(f"{size} mm: {_end(one)}" for size, one in zip((17, 19), higher, strict=True))
         more = f"; none from {stands.words} on" if stands else ""
         kept = surely(not any(len(one.capsized) for one in higher))
-        rows.append(observed(f"with {one.words}, frozen", "no capsize in 17 and 19 mm", ends + more, kept, EXACT))
+        row = observed(f"with {one.words}, frozen", "no capsize in 17 and 19 mm", ends + more, kept, EXACT)
+        rows.append(row.against(Kind.SIGN))
     ours = Damping(barge.given.damping, barge.given.quadratic_damping)
     curves[ours] = barge.responses([ours], 0.010)[0]
     near = surely(abs(curves[ours].peak[0] - PEAK) <= DIGITS.within)

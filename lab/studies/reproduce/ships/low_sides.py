@@ -28,6 +28,7 @@ from solvers.ship.motion import RollDamping
 PRESET = "ship/capsize-map"
 FREQUENCY = 4.4  # rad/s, the source's and the preset's
 SAYS = {"19 mm": "capsizes", "17 mm": "capsizes at 4.5 rad/s", "15 mm": "does not"}  # the source of its barge, loose
+HIGHEST = 19.0  # mm: up to these waves the source's barge stands with frozen cargo
 CURVE = np.arange(10.0, 31.0, 1.0)  # mm
 WIDE = (8.0, 3.6)  # inches
 # Of the map: waves (mm, rad/s) that a heap meets.
@@ -91,12 +92,18 @@ def _frozen(one: Outcome) -> str:
 def tell_map(found: Mapping[str, Sequence[Outcome]]) -> Told:
     """From which amplitude on she is lost with loose cargo, at each frequency; and with frozen cargo."""
     runs = found["low sides"]
-    rows = _edge(runs, "lost with loose cargo")
+    return Told([*_edge(runs, "lost with loose cargo"), frozen_row(runs)], _map_figure(runs))
+
+
+def frozen_row(runs: Sequence[Outcome]) -> Row:
+    """In which waves of a map she is lost with frozen cargo; judged where loose cargo loses her in waves as low."""
     alone = [leading_number(one.setting[AMPLITUDE]) for one in runs if _frozen(one) != "stands"]
     says = f"in {len(alone)} of {len(runs)} waves" + (f", from {min(alone):g} mm on" if alone else "")
-    alike = surely(not alone or min(alone) > 19.0)
-    rows.append(observed("lost with frozen cargo", "not in 17 and 19 mm", says, alike, EXACT))
-    return Told(rows, _map_figure(runs))
+    lower = [leading_number(one.setting[AMPLITUDE]) for one in runs if _lost(one)[0]]
+    fails = bool(lower) and min(lower) <= HIGHEST  # else that frozen cargo does not lose her tells nothing
+    alike = surely(not alone or min(alone) > HIGHEST) if fails else None
+    says += "" if fails else f"; not judged, loose cargo does not lose her in the waves up to {HIGHEST:g} mm, either"
+    return observed("lost with frozen cargo", "not in 17 and 19 mm", says, alike, EXACT)
 
 
 def tell_tank(found: Mapping[str, Sequence[Outcome]]) -> Told:

@@ -12,7 +12,7 @@ from lab.measures.value import Value, over_worlds
 from lab.report.numbers import BARS
 from lab.report.plots import BELOW, canvas
 from lab.studies.reproduce.estimates import Verdict, mean, together
-from lab.studies.reproduce.experiment import ANY, Found, Row, Tolerance, alone, counted, observed, stated
+from lab.studies.reproduce.experiment import ANY, Found, Kind, Row, Tolerance, alone, counted, observed, stated
 from lab.studies.reproduce.figures import leading_number
 from lab.studies.reproduce.runs import Outcome
 
@@ -94,10 +94,11 @@ def largest_rolls(found: Found) -> list[Row]:
         rows.append(stated("largest with frozen cargo: frequency", PEAK[1], there, STEP, exact=True))
     quantity, source = "largest with loose cargo", "less than 30 deg, and less than frozen"
     if not (loose and frozen):
-        return [*rows, observed(quantity, source, "not found", Verdict.CANNOT_TELL, ANY)]
+        return [*rows, observed(quantity, source, "not found", Verdict.CANNOT_TELL, ANY).against(Kind.SIGN)]
     rolls = mean(loose[0])
     verdict = together([rolls.lies(-np.inf, LARGE), rolls.lies(-np.inf, frozen[0].value)])
-    return [*rows, observed(quantity, source, f"{counted(loose[0])} at {loose[1]:g} rad/s", verdict, ANY)]
+    said = f"{counted(loose[0])} at {loose[1]:g} rad/s"
+    return [*rows, observed(quantity, source, said, verdict, ANY).against(Kind.SIGN)]
 
 
 def _largest(runs: Sequence[Outcome], name: str) -> tuple[Value, float] | None:

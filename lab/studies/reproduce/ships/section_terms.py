@@ -104,14 +104,20 @@ class Model:
 
     def sailed(self, test: Measurement) -> np.ndarray:
         """The same with the section clipped at the waves' slope, its memory and quadratic damping, stepped in time."""
+        return self.in_windows(test, [test.window])[0]
+
+    def in_windows(self, test: Measurement, windows: Sequence[tuple[float, float]]) -> np.ndarray:
+        """The same (windows, 3) of other windows (s) in one voyage."""
         ship = self.ship
         section, about = ship.load.section, ship.about
         load = floating_in_waves(section, self.water, about, self._train(test), self.table, (self.heave, 0.0))
         ship = replace(ship, load=load, radiation=remembered(self.table, self._memory))
-        voyage = sail(ship, start(ship, self.heave, self.roll), INTERVAL, test.window[1])
-        inside = voyage.time >= test.window[0]
-        found = fundamental(voyage.time[inside], voyage.state[inside, :3], test.frequency) / test.amplitude
-        return np.abs(found) / self._per(test.frequency)
+        voyage = sail(ship, start(ship, self.heave, self.roll), INTERVAL, max(end for _, end in windows))
+        found = []
+        for begin, end in windows:
+            inside = (voyage.time >= begin) & (voyage.time <= end + 0.5 * INTERVAL)
+            found.append(fundamental(voyage.time[inside], voyage.state[inside, :3], test.frequency) / test.amplitude)
+        return np.abs(np.array(found)) / self._per(test.frequency)
 
     @property
     def _memory(self):

@@ -24,7 +24,8 @@ ARRIVED = 0.2  # ρ g H
 AVERAGE = 0.010  # s: hits of a few particles are shorter
 WALL = 1010.0 / 300.0  # H from the column's end
 FIRST = 0.6  # √(H/g) after the arrival in which the first peak is sought
-FRONTS, PRESSURES = "dam_break_fronts/front_lobovsky_H0.300m.csv", "lobovsky_dam_break/pressure_sensor1.csv"
+HEIGHTS = np.array([3.0, 15.0, 30.0, 80.0])  # mm over the floor, of the sensors on the wall
+FRONTS, PRESSURES = "dam_break_fronts/front_lobovsky_H0.300m.csv", "lobovsky_dam_break/pressure_sensor{}.csv"
 COLOURS = BLUE, VERMILION, GREEN
 
 
@@ -33,7 +34,7 @@ class Break:
     """A dam break in H, √(H/g), ρ g H.
 
     The front's speed and when it is at the wall; from when sensor 1 shows it; first peaks and largest means over 10 ms
-    at sensors 1 and 2; the plateau at sensor 1.
+    at sensors 1 and 2; the means over PLATEAU at sensors 1 to 4, and of the wall up to the highest of them.
     """
 
     front: float
@@ -44,6 +45,10 @@ class Break:
     mean: float
     second_mean: float
     plateau: float
+    plateau_2: float
+    plateau_3: float
+    plateau_4: float
+    lowest_wall: float
 
 
 class Scales:
@@ -92,8 +97,17 @@ def find_break(one: Outcome) -> Break:
         means = [float(np.convolve(pressure[first, k], share, "valid").max()) for k in (0, 1)]
     course = front_course(one)
     wall = _first(course[0], course[1] >= WALL - spacing(one.recording.preset) / unit.length)
-    plateau = float(pressure[late, 0].mean()) if time[-1] >= PLATEAU[1] else np.nan
-    return Break(front_speed(*course), wall, arrival, *peaks, *means, plateau)
+    plateaus = pressure[late].mean(axis=0) if time[-1] >= PLATEAU[1] else np.full(len(HEIGHTS), np.nan)
+    return Break(front_speed(*course), wall, arrival, *peaks, *means, *plateaus.tolist(), over_wall(plateaus))
+
+
+def over_wall(pressures: Sequence[float]) -> float:
+    """Mean of the wall's lowest 80 mm of pressures at the HEIGHTS of the sensors.
+
+    By straight lines between them; below the lowest as there.
+    """
+    heights = np.concatenate([[0.0], HEIGHTS])
+    return float(np.trapezoid([pressures[0], *pressures], heights) / heights[-1])
 
 
 def _first(time: np.ndarray, reached: np.ndarray) -> float:
@@ -108,11 +122,15 @@ NUMBERS = {f"break_{one.name}": ("1", _part(one.name)) for one in fields(Break)}
 
 
 def figure(found: Found, speeds: Sequence[float], plateau: Sequence[float]) -> Figure:
-    """Fronts beside lines of `speeds`, √(gH), and the pressure at sensor 1 beside the range of its `plateau`, ρgH."""
+    """Fronts beside lines of `speeds`, √(gH), pressures at sensor 1 beside the range of its `plateau`, ρgH, and means.
+
+    The means are those over PLATEAU at all sensors.
+    """
     runs = {label: outcomes[0] for label, outcomes in found.items()}
-    drawing, (fronts, pressures) = canvas((SIZE[0] + 0.8, 3.6), 1, 2)
+    drawing, (fronts, pressures, means) = canvas((SIZE[0] + 3.0, 3.6), 1, 3)
     _draw_fronts(fronts, runs, speeds)
     _draw_pressures(pressures, runs, plateau)
+    _draw_means(means, runs)
     handles, labels = fronts.get_legend_handles_labels()
     more = pressures.get_legend_handles_labels()
     drawing.legend([*handles, more[0][0]], [*labels, more[1][0]], loc=BELOW, ncols=3)
@@ -136,7 +154,23 @@ def _draw_pressures(axes: Axes, runs: dict[str, Outcome], plateau: Sequence[floa
     for (_, one), colour in zip(runs.items(), COLOURS, strict=False):
         series, unit = one.recording.series, Scales(one)
         axes.plot(series["time"] / unit.time, series["gauge_pressure"][:, 0, 0] / unit.pressure, color=colour, lw=0.8)
-    if (measured := drawn(axes, PRESSURES)) is not None:
+    if (measured := drawn(axes, PRESSURES.format(1))) is not None:
         axes.fill_between(measured[0], measured[1], measured[3], color="0.5", alpha=0.4, lw=0)
         axes.plot(measured[0], measured[2], color="black", lw=0.9)
     axes.set(xlabel="t √(g/H)", ylabel="pressure at sensor 1 (ρgH)", xlim=(2.2, 4.6), ylim=(-0.1, 4.0))
+
+
+def _draw_means(axes: Axes, runs: dict[str, Outcome]) -> None:
+    """Means over PLATEAU at the sensors, the measured ones with 95 % of the repeats where both levels are known."""
+    for (_, one), colour in zip(runs.items(), COLOURS, strict=False):
+        found = find_break(one)
+        places = found.plateau, found.plateau_2, found.plateau_3, found.plateau_4
+        axes.plot(places, HEIGHTS, "o-", ms=3, lw=0.9, color=colour)
+    for k, height in enumerate(HEIGHTS, 1):
+        if (measured := drawn(axes, PRESSURES.format(k))) is None:
+            break
+        late = (measured[0] >= PLATEAU[0]) & (measured[0] <= PLATEAU[1])
+        low, middle, *high = measured[1:, late].mean(axis=1)
+        ends = [[middle - low], [high[0] - middle if high else 0.0]]
+        axes.errorbar(middle, height, xerr=ends, fmt="o", ms=4, capsize=2.5, color="black")
+    axes.set(xlabel="mean from 3.5 to 4.5 (ρgH)", ylabel="height of the sensor (mm)", xlim=(0.0, 1.2))

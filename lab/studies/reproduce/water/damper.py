@@ -24,7 +24,10 @@ from lab.studies.reproduce.water.measured import drawn, series
 from lab.studies.reproduce.water.theory.shallow_water import ShallowTank
 
 MEASURED = "spheric09_tuned_liquid_damper/motion_and_roll.csv"
+LIQUIDS = "spheric09_tuned_liquid_damper/roll_oil_glycerine.csv"
 TIME, EMPTY, WATER = 0, 3, 4  # columns: s, deg, deg
+# The measured roll with a liquid: its name, the file and the column (deg), by the liquid's density (kg/m³).
+RECORDS = {998.0: ("water", MEASURED, WATER), 990.0: ("oil", LIQUIDS, 1), 1261.0: ("glycerine", LIQUIDS, 2)}
 SETTLED = 10.0  # s: from then on the curves' times are compared
 APART = 0.5  # s: the farthest that one curve is shifted along the other
 ROLL = 2  # of a pose
@@ -49,9 +52,17 @@ def late(time: np.ndarray, ours: np.ndarray, when: np.ndarray, theirs: np.ndarra
     return float(shifts[int(np.argmax(likeness))])
 
 
-def _column(one: Outcome) -> int:
-    """The column of the record that a run is held against."""
-    return EMPTY if one.recording.preset.water is None else WATER
+def _record(one: Outcome) -> tuple[str, str, int]:
+    """The measured roll that a run is held against: of what, its file and its column."""
+    water = one.recording.preset.water
+    return ("empty", MEASURED, EMPTY) if water is None else RECORDS[water.density]
+
+
+def _measured(one: Outcome) -> tuple[np.ndarray, np.ndarray] | None:
+    """Times (T,) s and the measured roll (T,) deg of what a run has in its tank; None without the file."""
+    _, file, column = _record(one)
+    record = series(file)
+    return None if record is None else (record[TIME], record[column])
 
 
 def largest_roll(one: Outcome, _: object) -> float:
@@ -61,16 +72,16 @@ def largest_roll(one: Outcome, _: object) -> float:
 
 def later(one: Outcome, _: object) -> float:
     """By how much (s) the run is later than the record; NaN without it."""
-    record = series(MEASURED)
-    return np.nan if record is None else late(*roll(one), record[TIME], record[_column(one)])
+    record = _measured(one)
+    return np.nan if record is None else late(*roll(one), *record)
 
 
 def off(one: Outcome, _: object) -> float:
     """Root mean square difference (deg) from the record; NaN without it."""
-    record, (time, ours) = series(MEASURED), roll(one)
+    record, (time, ours) = _measured(one), roll(one)
     if record is None:
         return np.nan
-    return float(np.sqrt(np.mean((ours - np.interp(time, record[TIME], record[_column(one)])) ** 2)))
+    return float(np.sqrt(np.mean((ours - np.interp(time, *record)) ** 2)))
 
 
 def opposed(time: np.ndarray, moment: np.ndarray, roll: np.ndarray) -> np.ndarray:
@@ -143,8 +154,8 @@ def figure(found: Found) -> Figure:
     runs = {label: outcomes[0] for label, outcomes in found.items()}
     wet = [label for label in runs if label != DRY]
     drawing, panels = canvas((SIZE[0], 7.5), 3, 1)
-    _rolls(panels[0], EMPTY, "measured", {DRY: runs[DRY]}, [BLUE])
-    _rolls(panels[1], WATER, "measured", {label: runs[label] for label in wet}, COLOURS[1:])
+    _rolls(panels[0], {DRY: runs[DRY]}, [BLUE])
+    _rolls(panels[1], {label: runs[label] for label in wet}, COLOURS[1:])
     panels[0].sharex(panels[1])
     _moments(panels[2], {label: runs[label] for label in wet})
     _legend(drawing, panels)
@@ -152,16 +163,18 @@ def figure(found: Found) -> Figure:
 
 
 def liquid(found: Found) -> Figure:
-    """The roll with another liquid beside the record of the empty tank."""
+    """The roll with another liquid beside the measured one."""
     drawing, axes = canvas((SIZE[0], 2.5))
-    _rolls(axes, EMPTY, "measured, empty", {label: outcomes[0] for label, outcomes in found.items()}, COLOURS)
+    _rolls(axes, {label: outcomes[0] for label, outcomes in found.items()}, COLOURS)
     _legend(drawing, [axes])
     return drawing
 
 
-def _rolls(axes: Axes, column: int, words: str, runs: dict[str, Outcome], colours: Sequence[str]) -> None:
-    if (record := drawn(axes, MEASURED)) is not None:
-        axes.plot(record[TIME], record[column], color="black", lw=0.8, label=words)
+def _rolls(axes: Axes, runs: dict[str, Outcome], colours: Sequence[str]) -> None:
+    """The rolls of runs with the same in their tank, over the measured one."""
+    _, file, column = _record(next(iter(runs.values())))
+    if (record := drawn(axes, file)) is not None:
+        axes.plot(record[TIME], record[column], color="black", lw=0.8, label="measured")
     for (label, one), colour in zip(runs.items(), colours, strict=False):
         axes.plot(*roll(one), color=colour, lw=0.9, ls="--" if label == DRY else "-", label=label)
     axes.set(xlabel="time (s)", ylabel="roll (deg)")

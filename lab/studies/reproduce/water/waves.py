@@ -123,23 +123,28 @@ NUMBERS = {
 
 
 def swings(found: Found, swing: Sequence[float]) -> Figure:
-    """The pressure beside a sine of so many kPa, so many deg ahead of the tank, about so many kPa."""
+    """The pressure less its mean beside a sine of so many kPa, so many deg ahead of the tank.
+
+    The measured points are drawn about the mean of the sine through them.
+    """
     drawing, axes = canvas(SIZE)
     for (label, outcomes), colour in zip(found.items(), COLOURS, strict=False):
         time, pressure = _pressure(outcomes[0])
+        pressure = pressure - pressure.mean()
         samples = round(CALM / (time[1] - time[0]))
         axes.plot(time, pressure, color=colour, lw=0.4, alpha=0.4)
         means = np.convolve(pressure, np.full(samples, 1.0 / samples), "valid")
         middles = time[samples // 2 :][: len(means)]
         axes.plot(middles, means, color=colour, lw=1.2, label=f"{label}, means over {CALM} s")
     time = np.linspace(0.0, 10.0, 400)
-    size, phase, mean = swing
+    size, phase = swing
+    sine = size * np.sin(2.0 * time + np.radians(phase))
     for share in (0.9, 1.1):
-        sine = mean + share * size * np.sin(2.0 * time + np.radians(phase))
         label = "sine through the measured points, ± 10 %" if share < 1 else None
-        axes.plot(time, sine, color="0.5", ls=":", lw=1.0, label=label)
+        axes.plot(time, share * sine, color="0.5", ls=":", lw=1.0, label=label)
     if (measured := drawn(axes, PITCH)) is not None:
-        axes.plot(*measured, "o", ms=3, color="black", label="measured")
-    axes.set(xlabel="time (s)", ylabel="pressure on the end wall (kPa)")
+        zero = np.mean(measured[1] - np.interp(measured[0], time, sine))
+        axes.plot(measured[0], measured[1] - zero, "o", ms=3, color="black", label="measured")
+    axes.set(xlabel="time (s)", ylabel="pressure on the end wall\nless its mean (kPa)")
     drawing.legend(loc=BELOW, ncols=3)
     return drawing

@@ -133,12 +133,18 @@ def order(spacings: Sequence[float], errors: Sequence[float]) -> float:
 
 
 def order_line(what: str, spacings: Sequence[float], errors: Sequence[float], noise: float) -> list[Line]:
-    """A line of the order of convergence, first to third; none where the finest spacing's error is below the noise."""
+    """A line of the order of convergence, at least first; none where the finest spacing's error is below the noise.
+
+    Second order is the scheme's inside and first that of walls and surfaces, so that an error must fall at least as the
+    spacing does, but for what the noise of both ends makes of the order. One that stays or grows with refinement is
+    no convergence, however small it is.
+    """
     if len(errors) < 2 or abs(errors[-1]) < noise:
         return []
-    reason = "second order inside, first at walls and surfaces, and what disorder leaves"
-    name = f"order of the error of {what}"
-    return [Line(name, order(spacings, errors), 2.0, "second order of the scheme", 1.0, reason, relative=False)]
+    reason = f"errors known to {noise:.1g}; first order is that of walls and surfaces, second that inside"
+    unsure = sum(noise / abs(one) for one in (errors[0], errors[-1])) / np.log(spacings[0] / spacings[-1])
+    found, name = order(spacings, errors), f"order of the error of {what}"
+    return [Line(name, found, 1.0, "consistency of the scheme", float(unsure), reason, relative=False, at_least=True)]
 
 
 def errors_note(what: str, counts: Sequence[int], each: str, errors: Sequence[float]) -> list[str]:

@@ -81,15 +81,24 @@ class ShallowTank:
         walls = self.pull(roll, self.edges[[0, -1]], np.zeros(2)) * ends**2 * (0.5 * self.above - ends / 6.0)
         return float(walls[1] - walls[0] - np.sum(self.places * pull * deep) * self.cell)
 
-    def moments(self, roll: Roll, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    def wall_pressure(self, roll: np.ndarray, state: np.ndarray, height: float) -> float:
+        """The pressure over ρ (m²/s²) in the wall to the left, so high (m) over the floor; none over the water."""
+        deep = 1.5 * state[0, 0] - 0.5 * state[0, 1]
+        return float(self.pull(roll, self.edges[:1], np.zeros(1))[0] * max(deep - height, 0.0))
+
+    def moments(self, roll: Roll, duration: float) -> np.ndarray:
         """Times (T,) s and moments (T,) m⁴/s² of water that is at rest at first."""
+        return self.followed(roll, duration, self.moment)
+
+    def followed(self, roll: Roll, duration: float, number: Callable[[np.ndarray, np.ndarray], float]) -> np.ndarray:
+        """Times (T,) s and a number (T,) of roll and state of water that is at rest at first, (2, T)."""
 
         def at(time: float) -> np.ndarray:
             return np.array([roll(time, order) for order in range(3)])
 
         state, time, found = self.rest(), 0.0, []
         while time < duration:
-            found.append((time, self.moment(at(time), state)))
+            found.append((time, number(at(time), state)))
             start = time
             state, step = self.stepped(state, at(start), lambda step: at(start + step))  # noqa: B023
             time += step

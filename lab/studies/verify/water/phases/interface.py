@@ -102,6 +102,7 @@ def waves(fast: bool) -> Found:
         source = "linear theory of two viscous fluids"
         lines.append(Line(name, swings[-1].rate, exact.imag, source, allowed, why, "1/s"))
         lines += order_line(name, [1.0 / count for count in rows], errors, 0.01)
+        decays = [-one.decay / exact.real - 1.0 for one in swings]
         half = "half a spacing at the surface, of exp 2kz in the flow and exp 2z/δ in layers of shear"
         lines.append(
             Line(
@@ -114,13 +115,16 @@ def waves(fast: bool) -> Found:
                 "1/s",
             )
         )
-        decays = ", ".join(f"{-one.decay / exact.real:.2f}" for one in swings)
+        lines += order_line(
+            f"the decay under a fluid of {fluid.density:g} kg/m³", [1.0 / n for n in rows], decays, 0.01
+        )
+        told = ", ".join(f"{1.0 + one:.2f}" for one in decays)
         shown = ", ".join(f"{100 * error:+.2f} %" for error in errors)
         slower = f"{100 * (exact.imag / fluid.rate - 1):+.2f} %"
         lamb = f"{-exact.real / (2.0 * VISCOSITY * K**2):.2f}"
         notes.append(
             f"{fluid.density:g} kg/m³: with viscosity the rate is {slower} off ω² = g k (ρ_w − ρ_a)/(ρ_w coth kd + "
-            f"ρ_a coth kd_a), the decay {lamb} of 2 ν k². {rows} layers: rates {shown}, decay {decays} of that"
+            f"ρ_a coth kd_a), the decay {lamb} of 2 ν k². {rows} layers: rates {shown}, decay {told} of that"
             f"{', with the reduced pressure.' if fluid.reduced else '.'}"
         )
     return Found(lines, notes=notes)
