@@ -113,12 +113,22 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
             lines += ["", outline_at(form, asked.at)]
     except Unavailable as error:
         raise LabError(f"{path.name}: {error}") from None
+    own_form = mesh is not None or asked.fair or not is_plain(path)
+    _spare(path, asked, [folder / f"{name}.csv" for name in (*written, *["offsets"] * own_form)])
     tables.write(written, folder)
-    if mesh is None and (asked.fair or not is_plain(path)):
+    if mesh is None and own_form:
         write_text(folder / "offsets.csv", text_of(list(rows_of(form))))
     if mesh and (said := write_offsets(form, folder)):
         lines += ["", said]
     return "\n".join([*lines, "", SIGNS if mesh is None else f"{HEEL}; x, y and z are those of the file."])
+
+
+def _spare(path: Path, asked: Asked, written: list[Path]) -> None:
+    """Raise LabError if a table would be written over one that was read."""
+    given = [one.resolve() for one in (path, asked.weights, asked.points, asked.grain, asked.holds) if one]
+    for one in written:
+        if one.resolve() in given:
+            raise LabError(f"--out: {one} was read and would be written over; choose another folder.")
 
 
 def _judged(form: Form, water: Water, asked: Asked, holds: dict[str, Hold], folder: Path, name: str):

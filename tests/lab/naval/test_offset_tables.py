@@ -5,6 +5,7 @@ import pytest
 
 from lab.assembly.offsets import from_offsets, read_offsets, rows_of
 from lab.naval.weights import read_weights
+from lab.report.hull import Asked, examine
 from solvers.ship.water import Water
 from tests.oracles.presets import error_of
 
@@ -131,3 +132,17 @@ def test_weights_of_a_spreadsheet(tmp_path):
     assert read_weights(path) == read_weights(plain)
     path.write_text("name,mass [kg],lcg,tcg,vcg\nall,1000,0,0,1\n")
     assert error_of(read_weights, path) == "weights.csv: line 1: mass [kg] has to be in t; give it so."
+
+
+def test_files_that_are_read_are_not_written_over(tmp_path):
+    """A box named offsets.csv that is written anew, and her weights.csv, with the results beside them."""
+    box = "".join(f"{x};{z};5\n" for x in (0, 20, 40) for z in (0, 6))
+    hull, plain, weights = (tmp_path / f"{name}.csv" for name in ("offsets", "hull", "weights"))
+    hull.write_text("x;z;y\n" + box)
+    plain.write_text("station;z;half_breadth\n" + box)
+    weights.write_text("name,mass,lcg,tcg,vcg\nall,800,20,0,2\n")
+    before = hull.read_text(), weights.read_text()
+    for path, asked, name in ((hull, Asked(), hull), (plain, Asked(weights=weights), weights)):
+        told = error_of(examine, path, tmp_path, asked)
+        assert told == f"--out: {name} was read and would be written over; choose another folder."
+    assert (hull.read_text(), weights.read_text()) == before
