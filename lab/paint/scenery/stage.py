@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw
 from lab.paint import decorations as deco
 from lab.paint.colours import Colouring, spread
 from lab.paint.footage import Bed
-from lab.paint.page.layout import Box
+from lab.paint.page.layout import TEXT, Box
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.scenery.afloat import Afloat
@@ -25,6 +25,8 @@ WALL, PLATE = 0.36, 0.3  # thickness in u
 THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
 ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
+AIR = 0.6  # u, between a name and what is to its right
+STILL = 1e-9  # m, rad: poses that differ by less are told once, for all beds
 NAME, BAND = 1.8, 2.6  # u, for the name of a bed, and for the loss of a ship among several
 FOLLOW = 0.35  # of her breadth and height: a ship that goes farther sideways or up is followed by the camera
 HOUSE = 1.0, 0.8  # of the superstructure's height that has room in the stage, of one ship alone and of several
@@ -52,6 +54,9 @@ class Stage:
         self._rows, self._time = rows, time
         self._earth = setting.frame == "earth"
         self._named = any(bed.name for bed in beds)
+        self._alike = self._named and bool(
+            np.ptp(pose, axis=1).max(initial=0.0) < STILL
+        )  # no readings beside the names
         self._sorts = _sort_by_shape(beds)
         self._afloat = self._earth and all(bed.footage.sea for bed in beds)
         self._drift = pose * np.array([self._drifts(bed) for bed in beds])
@@ -267,8 +272,13 @@ class Stage:
             NAME * self._unit * self._named,
             BAND * self._unit * lost,
             filled=afloat and several,
+            beside=self._names_wide() * self._alike * (not afloat),
         )
         return lay_cells(self.grounds, self.setting.box, self._unit, around)
+
+    def _names_wide(self) -> float:
+        """The width (pixels) of the longest name, with some air."""
+        return max(deco.font(TEXT * self._unit).getlength(bed.name) for bed in self.beds) + AIR * self._unit
 
 
 def carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:

@@ -112,3 +112,19 @@ def test_cells_lie_in_the_stage_and_show_all_to_one_scale(count, filled):
     edges = np.array(cells.boxes)
     reached = *edges[:, :1].min(axis=0), *edges[:, 2:].max(axis=0)
     assert (reached == (stage[0], *stage[2:])) == filled or count == 1  # those of ships leave none of the stage empty
+
+
+@pytest.mark.parametrize("count", [1, 2, 4, 5, 24])
+def test_names_stand_beside_beds_where_these_are_larger_so(count):
+    """Square beds in a wide stage have room at their sides; a name is left of its bed and on no other one."""
+    ground, stage = (np.array([-1.0, -1.0]), np.array([1.0, 1.0])), (20, 40, 820, 640)
+    above = lay_cells([ground] * count, stage, 10.0, Room(5.0, 18.0))
+    beside = lay_cells([ground] * count, stage, 10.0, Room(5.0, 18.0, beside=60.0))
+    assert beside.cameras[0].scale >= above.cameras[0].scale
+    if count == 4:  # two rows, for which the height decides
+        assert beside.cameras[0].scale > above.cameras[0].scale
+    beds = [np.sort(camera.pixels(np.array(ground)), axis=0) for camera in beside.cameras]
+    for x, y in beside.names if beside.width == 60.0 else ():
+        name = np.array([[x, y - 13.0], [x + 60.0, y]])
+        assert stage[0] <= x and stage[1] <= y - 13.0
+        assert not any((name[0] < bed[1]).all() and (bed[0] < name[1]).all() for bed in beds)

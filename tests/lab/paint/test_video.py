@@ -12,6 +12,7 @@ from lab.base.errors import LabError
 from lab.paint.colours import MODES
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import Bed, open_footage
+from lab.paint.page.texts import Texts
 from lab.paint.page.theme import LIGHT, luminance
 from lab.paint.video import playback, poster, render_grid, render_recording
 from lab.paint.water.colours import FIELDS
@@ -213,15 +214,27 @@ def test_the_curves_grow_with_the_film(four_beds):
     assert 0 < drawn[0] < drawn[1] < drawn[2]
 
 
-def test_beds_with_different_motions_share_only_the_clock(four_beds, tmp_path):
-    apart = shutil.copy(four_beds, tmp_path)
+def test_beds_with_different_motions_share_only_the_clock(four_beds, tmp_path, monkeypatch):
+    """Their readings stand beside their names; those of beds that move alike beside the clock."""
+    apart, write, told = shutil.copy(four_beds, tmp_path), Texts.write, []
+
+    def noted(texts, name, box, text, *rest, **kept):
+        told.append((name, text))
+        return write(texts, name, box, text, *rest, **kept)
+
+    monkeypatch.setattr(Texts, "write", noted)
     with h5py.File(apart, "r+") as file:
         file["frames/pose"][:, 1] *= 0.5
         sealed(file)
-    together, alone = (pictures_of(path, [5])[0] for path in (four_beds, apart))
-    readings, names = np.s_[44:80, 456:626], np.s_[45:75, 20:430]
+    (together,) = pictures_of(four_beds, [5])
+    names = {text for name, text in told if name.startswith("bed ")}
+    told.clear()
+    (alone,) = pictures_of(apart, [5])
+    with_readings = {text for name, text in told if name.startswith("bed ")}
+    readings = np.s_[44:80, 456:626]
     assert (together[readings] < 100).any() and (alone[readings] == 255).all()
-    assert (alone[names] < 200).sum() > 1.5 * (together[names] < 200).sum()
+    assert names == {"bed 1", "bed 2", "bed 3", "bed 4"}
+    assert len(with_readings) == 4 and all("(" in text for text in with_readings)
 
 
 def test_a_run_without_frames_or_a_file_cut_short_is_refused_in_one_sentence(tmp_path):
