@@ -46,6 +46,8 @@ class Lean:
             if bodies.count:
                 off = self._rows(deep(behind.points, behind.along, tank.outline), bodies.solids.deep, slots)
                 self.deep = own.holding("deep", padded(off, p.dry), "row lane")
+                goes_on = (bodies.solids.prolongs | np.eye(bodies.count, dtype=bool)).astype(np.int32)
+                self.goes_on = own.holding("goes_on", goes_on, "part other", ti.i32)
                 sides = [*bodies.solids.sides, sides_of(tank.outline)]
                 self.ends = np.cumsum([0, *(len(of_one) for of_one in sides)]).tolist()
                 self.sides = own.holding("sides", np.concatenate(sides), "side number", own.exact)
@@ -73,12 +75,16 @@ class Lean:
 
     @ti.func
     def clear(self, b, along: ti.template()):
-        """1 for the dummies of a block that are away from all walls but their own as the step begins; else 0."""
+        """1 for the dummies of a block that are away from all walls but their own as the step begins; else 0.
+
+        Their own is a plate with those that go on in its line (`prolonging`).
+        """
         p, w, row = self.particles, b // self.particles.stride, self.bodies.row(b)
         clear, deep = p.ones(), p.load(self.deep, b % p.stride - p.wet)
         to_face = [0.0 - deep * along[1], deep * along[0]]
         for k in ti.static(range(self.bodies.count)):
-            if row < 0 or self.bodies.owner[ti.max(row, 0)] != k:
+            owner = self.bodies.owner[ti.max(row, 0)]
+            if row < 0 or self.goes_on[owner, k] == 0:
                 pose = [self.bodies.pose[w, k, n] for n in ti.static((Y, Z, COSINE, SINE))]
                 clear *= self.clear_of(b, k, pose, to_face)
         if row >= 0:

@@ -1,14 +1,16 @@
 """Dummies of the bodies and plates in the water, as they are drawn, in blocks of lanes."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR, UNUSED
-from solvers.fluid.walls.layers import deep, faces, firm, layers, sharp, straight
+from solvers.fluid.walls.layers import behind, deep, faces, firm, layers, sharp, straight
 from solvers.tank.parts import Part
 
+TOUCHES = 0.25  # spacings between a plate's end and a wall or a part from which on no water passes between them
 STRIP = 4.0  # spacings: height of the strips by which the dummies of a body are cut into blocks
 
 
@@ -34,6 +36,45 @@ def is_solid(part: Part) -> bool:
     return getattr(part, "closed", False)
 
 
+def prolonging(parts: Sequence[Part], spacing: float) -> np.ndarray:
+    """Which parts (k, k) go on as one plate: plates in one line whose ends touch, and that move alike.
+
+    Also by way of others between them, and each plate itself; no solid body.
+    """
+    plates = [not is_solid(part) for part in parts]
+    found = np.diag(np.array(plates, dtype=bool))
+    for k, first in enumerate(parts):
+        for m, second in enumerate(parts[:k]):
+            if plates[k] and plates[m] and replace(first, points=second.points) == second:
+                found[k, m] = found[m, k] = _in_line(np.array(first.points), np.array(second.points), spacing)
+    for k in range(len(parts)):
+        found |= found[:, k : k + 1] & found[k]
+    return found
+
+
+def _in_line(first: np.ndarray, second: np.ndarray, spacing: float) -> bool:
+    """Whether a plate (2, 2) m goes on in the line of another, from an end that touches one of its ends."""
+    apart = np.linalg.norm(first[:, None] - second, axis=2)
+    ours, theirs = np.unravel_index(apart.argmin(), apart.shape)
+    away = first[ours] - first[1 - ours]
+    off = second - first[ours]
+    across = np.abs(away[0] * off[:, 1] - away[1] * off[:, 0]) / np.hypot(*away)
+    return bool(max(apart.min(), across.max()) < TOUCHES * spacing and off[1 - theirs] @ away > 0.0)
+
+
+def line_of(parts: Sequence[Part], members: Sequence[int]) -> np.ndarray:
+    """The outermost ends (2, 2) m, as drawn, of plates that go on as one, in the direction of the first of them."""
+    ends = np.concatenate([np.asarray(parts[k].points, dtype=float) for k in members])
+    ways = (ends - ends[0]) @ (ends[1] - ends[0])
+    return ends[[ways.argmin(), ways.argmax()]]
+
+
+def nearest_of(parts: Sequence[Part], members: Sequence[int], points: np.ndarray) -> np.ndarray:
+    """Which of plates that go on as one is nearest to each point (n, 2) m, (n,)."""
+    away = [np.linalg.norm(behind(points, np.asarray(parts[k].points, dtype=float)), axis=1) for k in members]
+    return np.asarray(members)[np.argmin(away, axis=0)]
+
+
 def sides_of(points: Sequence, closed: bool = True) -> np.ndarray:
     """The sides (n, 4) of a polygon, or of a line, through points (m): where each begins, and the way to its end."""
     corners = np.asarray(points, dtype=float)
@@ -56,12 +97,13 @@ class Solids:
     away from corners and ends (see `layers.straight`), `sliding` those away from bodies' sharp corners, `deep` (blocks,
     lanes) m how far they are off the faces, `numbers` (blocks, lanes), UNUSED in lanes without a dummy, of which the
     first lane is none; `owner` (blocks,) is the part, `radius` (blocks,) m how far a block's dummies are from its first
-    one. `sides` are those of each part, see `sides_of`.
+    one. `sides` are those of each part, see `sides_of`, `prolongs` (parts, parts) as of `prolonging`.
     """
 
     def __init__(self, parts: Sequence[Part], water: Water, lanes: int):
         rows = int(np.ceil(water.reach / water.spacing - 1e-9))
-        found = [self._part(part, water, rows, lanes) for part in parts]
+        self.prolongs = prolonging(parts, water.spacing)
+        found = [self._part(k, parts, water, rows, lanes) for k in range(len(parts))]
         places = [place for place, *_ in found]
         self.sides = [sides_of(part.points, is_solid(part)) for part in parts]
         self.ends = np.cumsum([0, *(len(place) for place in places)])
@@ -79,23 +121,25 @@ class Solids:
         away = np.linalg.norm(self.places - self.places[:, :1], axis=2)
         self.radius = np.where(used, away, 0.0).max(axis=1, initial=0.0)
 
-    @staticmethod
-    def _part(part: Part, water: Water, rows: int, lanes: int) -> tuple[np.ndarray, ...]:
-        """Of one part's dummies, in blocks of lanes, what `Solids` has from `places` to `deep`."""
-        spacing = water.spacing
+    def _part(self, k: int, parts: Sequence[Part], water: Water, rows: int, lanes: int) -> tuple[np.ndarray, ...]:
+        """Of the dummies of part k, in blocks of lanes, what `Solids` has from `places` to `deep`."""
+        part, spacing, drawn = parts[k], water.spacing, np.asarray(parts[k].points, dtype=float)
         if is_solid(part):
             corners = counter_clockwise(part.points)
             points, volumes, depths = layers(corners[::-1], spacing, rows)
             along = faces(points, corners)
             slides = straight(points, along, sharp(corners[::-1]), water.reach)
-        else:
-            points, volumes, depths = sheet(part.points, spacing, rows)
-            way = np.subtract(part.points[1], part.points[0])
+        else:  # of plates that go on as one, those that are nearest to this one
+            members = np.flatnonzero(self.prolongs[k])
+            drawn = line_of(parts, members)
+            whole = sheet(drawn, spacing, rows)
+            mine = nearest_of(parts, members, whole[0]) == k
+            points, volumes, depths = (one[mine] for one in whole)
+            way = drawn[1] - drawn[0]
             along = slides = np.tile(way / np.hypot(*way), (len(points), 1))
         strip = np.floor((points[:, 1] - points[:, 1].min()) / (STRIP * spacing))
         order = np.lexsort((points[:, 0], strip))
         more = -len(points) % lanes
-        drawn = np.asarray(part.points, dtype=float)
         away, off = straight(points, along, drawn, water.reach), deep(points, along, drawn)
         columns = (points, FAR), *((one, 0.0) for one in (volumes, firm(depths, spacing), along, away, slides, off))
         filled = (np.concatenate([one[order], np.full((more, *one.shape[1:]), fill)]) for one, fill in columns)

@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 from solvers.fluid.checks import residual
+from solvers.fluid.given import Water
 from solvers.fluid.start.parts import clear_of
+from solvers.fluid.start.plates import packed_beside
+from solvers.fluid.walls.solids import is_solid, line_of, prolonging
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from solvers.tank.parts import Part
-from tests.oracles.water import still
+from solvers.tank.parts import Body, Part
+from tests.oracles.water import box, still
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.4, 0.4, 0.1, 20
 SPACING, SPEED = DEPTH / ROWS, 1.0
@@ -23,6 +26,34 @@ def pushed(*plates: Part) -> Simulation:
     drops = drops[:, clear_of(drops[0, :, :2], plates, SPACING)]
     scene: Scene = still(WIDTH, HEIGHT, DEPTH, ROWS, parts=plates, drops=drops, sound_speed=10.0 * SPEED)
     return Simulation(scene, threads=1, arch="cpu")
+
+
+def test_plates_that_touch_in_one_line_and_move_alike_are_one():
+    """Whichever way they are drawn, and by way of a third; not at an angle, past a gap, on itself, or moved apart."""
+    first, second, third = (
+        Part(((0.0, 0.0), (0.1, 0.1))),
+        Part(((0.2, 0.2), (0.1, 0.1))),
+        Part(((0.2, 0.2), (0.3, 0.3))),
+    )
+    assert prolonging((first, third, second), SPACING).all()
+    np.testing.assert_allclose(line_of((second, first, third), (0, 1, 2)), [(0.3, 0.3), (0.0, 0.0)])
+    for other in (
+        Part(((0.1, 0.1), (0.2, 0.1))),
+        Part(((0.1 + 0.3 * SPACING, 0.1), (0.2, 0.2))),
+        Part(((0.1, 0.1), (0.05, 0.05))),
+        Part(((0.1, 0.1), (0.2, 0.2)), move=(0.1, 0.0), **GOES),
+        Body(((0.1, 0.1), (0.2, 0.2), (0.1, 0.2)), closed=True),
+    ):
+        np.testing.assert_array_equal(prolonging((first, other), SPACING), np.diag([True, not is_solid(other)]))
+
+
+def test_water_is_packed_beside_two_plates_that_abut_as_beside_one():
+    """Before, the joint was transparent over a smoothing length to either side, and all particles lay elsewhere."""
+    water, outline = Water(spacing=0.025, sound_speed=10.0), box(0.4, 0.4)
+    ends, joint = ((-0.1, 0.0), (0.05, 0.2)), (-0.04, 0.08)
+    whole = packed_beside(outline, 0.25, water, (Body(ends),), outline)
+    halves = packed_beside(outline, 0.25, water, (Body((joint, ends[0])), Body((joint, ends[1]))), outline)
+    np.testing.assert_allclose(halves.points, whole.points, atol=1e-9)
 
 
 @pytest.mark.slow
@@ -42,3 +73,23 @@ def test_the_account_of_a_plate_that_hits_water_is_never_late():
     np.testing.assert_allclose(rows["part_work"].sum(axis=1), rows["water_work"])
     run.close()
     assert most > 0.1 * 1000.0 * SPEED * 10.0 * SPEED * 0.2  # a tenth of ρ c U: else it hit nothing
+
+
+@pytest.mark.slow
+def test_plates_that_abut_push_water_as_one_plate_does():
+    """Dummies of both halves lie where those of the whole do. A joint that leaks has a jet of 2 m/s."""
+    half = 0.5 * DEPTH
+    halves = (
+        Part((ACROSS[0], (0.0, half)), move=(0.05, 0.0), **GOES),
+        Part(((0.0, half), ACROSS[1]), move=(0.05, 0.0), **GOES),
+    )
+    found = []
+    for plates in ((Part(ACROSS, move=(0.05, 0.0), **GOES), CLEAR), halves):
+        run = pushed(*plates)
+        run.advance(40)
+        found.append((run.snapshot()["water_velocity"][0], run.observe()["part_force"][0, :, 0].sum()))
+        run.close()
+    (whole, force), (joined, forces) = found
+    assert np.abs(whole).max() > 0.5 * SPEED
+    np.testing.assert_allclose(joined, whole, atol=1e-6 * SPEED)
+    np.testing.assert_allclose(forces, force, rtol=1e-6)
