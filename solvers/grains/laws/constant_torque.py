@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
-from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
+from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus
@@ -48,7 +48,7 @@ class ConstantTorque:
         cap, limit = contacts.rolling_radius[w, block] * normal, contacts.rolling_limit[w, block]
         share = lesser(FOLLOWING * TURNING * limit / greater(cap, SMALLEST_TORQUE), 1.0)
         damping = cap * (1.0 / TURNING)
-        at_once = lesser(damping, AT_ONCE * limit)
+        at_once = lesser(damping, PROMPT * limit)
         lag = lagging(damping - at_once, share, turning, contacts.rolling_followed[w, block], cap)
         contacts.rolling_followed[w, block] = lag
         return within(minus(lag) - at_once * turning, cap)

@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
-from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
+from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging, relieved
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus, size
@@ -45,10 +45,10 @@ class Coulomb:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0) * settled(root, rate, dt)
+        share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
         damping = cap * (1.0 / SLIP)
-        at_once = lesser(damping, AT_ONCE * limit)
-        fast, before = at_once * slip, contacts.followed[w, block]
+        at_once = lesser(damping, PROMPT * limit)
+        fast, before = at_once * slip, contacts.followed[w, block] * relieved(root, rate, dt)
         room = greater(cap - size(fast), 0.0)
         lag = lagging(damping - at_once, share, slip, before, room)
         contacts.followed[w, block] = lag

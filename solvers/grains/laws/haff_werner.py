@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
-from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
+from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging, relieved
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus, size
@@ -27,7 +27,7 @@ class HaffWerner:
     memory = ("followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
-        """[μ, γ_s in N s/m, 0.02/γ_s in m/(N s)]."""
+        """[μ, γ_s in N s/m, 0.2/γ_s in m/(N s)]."""
         damping = between.shear_damping
         return [between.friction, damping, FOLLOWING / damping if damping else 0.0]
 
@@ -44,9 +44,8 @@ class HaffWerner:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share = lesser(c[2] * limit, 1.0) * settled(root, rate, dt)
-        at_once = lesser(AT_ONCE * limit, c[1])
-        fast, before = at_once * slip, contacts.followed[w, block]
+        share, at_once = lesser(c[2] * limit, 1.0), lesser(PROMPT * limit, c[1])
+        fast, before = at_once * slip, contacts.followed[w, block] * relieved(root, rate, dt)
         room = greater(cap - size(fast), 0.0)
         lag = lagging(c[1] - at_once, share, slip, before, room)
         contacts.followed[w, block] = lag

@@ -5,15 +5,20 @@ from math import inf, sqrt
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
-from solvers.machine.wide import size
 
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
-# The contact network's largest eigenvalue is 4.3 for six equal spheres around one in a plane, and the scheme, with
-# velocities predicted by half a step, is stable while 4 × damper + spring in these units is less than 4.
+# The contacts of a grain act on it together: a network of them is as stiff as one contact times the largest eigenvalue
+# of J M⁻¹ Jᵀ, with J from the velocities and spins of the grains to the slips of the contacts, each weighed by the root
+# of its own m_t = (2/7) m_eff. By Gershgorin's theorem that is at most (5/7) Σ m_eff (1/m_i + 1/m_j) over the contacts
+# of two grains that touch, 4.3 where equal spheres touch six others each in a plane. It is no more where sizes differ:
+# of a small grain each contact counts nearly twice, but it has no room for six larger ones; of a large one many small
+# grains count little. With velocities predicted by half a step a damper is stable up to m/Δt, and a damper and a
+# spring with history together while 4 × damper + spring is less than 4. The split damper (`lagging`) is stable while
+# 2 × PROMPT + FOLLOWING is less than 2: in networks up to 5.
 AT_ONCE = 0.2
-FOLLOWING = 0.02
 SPRING = 0.1
-SETTLED = 150.0  # steps: an overlap that would take longer to vanish is at rest, and one in a collision is not
+PROMPT, FOLLOWING = 0.1, 0.2
+SMALLEST_OVERLAP = 1e-30  # m; keeps the division finite in contacts with a gap
 
 
 def spring_limit(stiffness: float, inertia: float) -> float:
@@ -30,28 +35,32 @@ def shear_limit(stiffness: float, inertia: float, time: float) -> float:
 
 
 @ti.func
-def settled(root, rate, dt):
-    """1 for contacts at rest along the normal, from √ξ (√m) and ξ̇ (m/s), and 0 in collisions but for their turning."""
-    return ti.select(root * root > SETTLED * dt * size(rate), 1.0 + 0.0 * root, 0.0 * root)
+def relieved(root, rate, dt):
+    """Share of its load that a Hertz contact keeps over a step, ξ^(3/2) now over that before, at most 1.
+
+    From √ξ (√m) and ξ̇ (m/s).
+    """
+    overlap = root * root
+    kept = overlap / (overlap + greater((0.0 - dt) * rate, 0.0) + SMALLEST_OVERLAP)
+    return kept * ti.sqrt(kept)
 
 
 @ti.func
 def lagging(damping, share, velocity, lag, room):
     """Force of the part of a damper that the step does not resolve, from its previous value `lag`, within ±`room`.
 
-    A damper γ on `velocity` is split. γ_f = min(γ, 0.2 m/Δt) acts at once; the rest, `damping` = γ − γ_f, acts through
-    a first-order low-pass filter, Ṡ = [(γ − γ_f) u − S]/T, with `share` = Δt/T = min(1, 0.02 (m/Δt)/γ) per step, so
+    A damper γ on `velocity` is split. γ_f = min(γ, 0.1 m/Δt) acts at once; the rest, `damping` = γ − γ_f, acts through
+    a first-order low-pass filter, Ṡ = [(γ − γ_f) u − S]/T, with `share` = Δt/T = min(1, 0.2 (m/Δt)/γ) per step, so
     that the step also resolves the filter's stiffness (γ − γ_f)/T. The velocity stops within a few steps, and under a
-    lasting load F it is F/γ, the creep of the law itself, whatever the step. A damper with γ < 0.2 m/Δt is not split.
+    lasting load F it is F/γ, the creep of the law itself, whatever the step. A damper with γ < 0.1 m/Δt is not split.
 
-    A new load is followed within T = 50 γ Δt²/m. Until then the contact gives way by F T/γ = 50 F Δt²/m, like a spring:
-    beds of 6 mm grains settled and tilted at draft (35 µs, T = 0.06 s, or 0.2 s while grains are slow and steps
-    doubled) shift by 0.02 mm until 2 deg, with 12 µs by 0.01 mm. At what angle they slip does not show it (`cargolab
-    bench accuracy`).
-
-    The filter is for lasting loads. In a collision of a few tens of steps it would take up the slip before the contact
-    sticks, and then drive it the other way. So friction laws give a `share` of zero until the contact has `settled`,
-    and as `room` what γ_f leaves of the Coulomb cap (conditional integration, as in controllers).
+    A new load is followed within T = 5 γ Δt²/m. Until then the contact gives way by F T/γ = 5 F Δt²/m, like a spring k
+    = 0.2 m/Δt², several times as stiff as the normal contact at the derived step. What this spring holds, S²/(2 k), is
+    not the law's: a damper returns nothing. So where a load goes, S has to go with it. Friction laws give as `lag` the
+    previous S times what the contact has kept of its normal force (`relieved`), as springs with history shrink with
+    their stiffness (Thornton, Cummins and Cleary 2013), and as `room` what γ_f leaves of the Coulomb cap (conditional
+    integration, as in controllers). The work of friction on the grains then rises by no more than S²/(2 k) ≤ (μ F_n
+    Δt)²/(0.4 m) in a contact that still bears F_n, and never for good.
     """
     return within(lag + share * (damping * velocity - lag), room)
 
