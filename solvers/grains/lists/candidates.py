@@ -4,6 +4,8 @@ The lists of contacts are filtered from them, some times over, before the cells 
 inner Verlet list, as in GROMACS (Páll et al. 2020, J. Chem. Phys. 153, 134110). Cells hold four times as many pairs.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 import taichi as ti
 
@@ -54,9 +56,10 @@ class Candidates:
         gaps = np.array([farthest, BESIDE * farthest, 2.0 * (reach + farthest)])
         self.farthest = own.holding("farthest", gaps, "number")
 
-    def forget(self) -> None:
-        """Have them sought anew before the next lists."""
-        self.known.fill(0)
+    def forget(self, worlds: Iterable[int]) -> None:
+        """Have those of some worlds sought anew before their next lists."""
+        for w in worlds:
+            self.known[w] = 0
 
     @ti.func
     def outdated(self, w, margin):

@@ -4,6 +4,8 @@ A unit lists its pairs in the order of their first grains, so its forces are sum
 threads. A pair within a unit is listed once, i < j (half-list); a pair across two units is listed in both.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 import taichi as ti
 
@@ -78,11 +80,15 @@ class Neighbours:
         self.contacts.forget()
         self.expire()
 
-    def expire(self) -> None:
-        """Have the lists rebuilt before the next step."""
-        self.wear.expire()
+    def expire(self, worlds: Iterable[int] | None = None) -> None:
+        """Have the lists of some worlds, or of all, rebuilt before the next step.
+
+        Others keep theirs: when lists are built decides on how long steps are, and on how sums are rounded.
+        """
+        worlds = range(self.units.worlds) if worlds is None else worlds
+        self.wear.expire(worlds)
         if not self.units.single:
-            self.candidates.forget()
+            self.candidates.forget(worlds)
 
     @ti.func
     def sort(self, w):

@@ -49,7 +49,7 @@ class Numbering:
             lists, odd = self.lists, self.lists.laws.odd
             renumber_list(lists.pairs, lists.units, order, odd, mates=True)
             renumber_list(lists.contacts, lists.units, order, odd, mates=False)
-            lists.expire()
+            lists.expire(order)
 
     def state(self) -> dict[str, np.ndarray]:
         """What `restore` continues from."""

@@ -6,6 +6,8 @@ that were not in such cells are farther apart; for them, and for walls, it suffi
 too, for outlines, which turn, and for bands, which would wait for each other at each look: by boxes they gain nothing.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 import taichi as ti
 
@@ -45,9 +47,12 @@ class Wear:
             self.due = own.holding("due", np.zeros(units.count), "unit", own.exact, kept=True)
             self.fastest = own.holding("fastest_part", np.array([walls.fastest]), "one", own.exact)
 
-    def expire(self) -> None:
-        """Have the lists rebuilt before the next step."""
-        self.travel.fill(NEVER)
+    def expire(self, worlds: Iterable[int]) -> None:
+        """Have the lists of some worlds rebuilt before the next step."""
+        travel, a_world = self.travel.to_numpy(), self.units.a_world
+        for w in worlds:
+            travel[w * a_world : (w + 1) * a_world] = NEVER
+        self.travel.from_numpy(travel)
 
     @ti.func
     def begin(self, u, t):

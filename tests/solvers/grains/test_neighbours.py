@@ -184,7 +184,7 @@ def test_lists_equal_brute_force_while_grains_fly(clouded):
             whole = field.to_numpy()
             whole[:, : position.shape[1]] = position[:, :, a]
             field.from_numpy(whole)
-        run.grains.lists.wear.expire()
+        run.grains.lists.wear.expire(range(2))
         run.advance(1)
         sought.append(run.grains.lists.candidates.renewed.to_numpy())
         for w in range(2):

@@ -1,5 +1,7 @@
 """Renumbering of mixed grains: it changes only the order of sums, and happens only where it saves time."""
 
+from itertools import cycle
+
 import numpy as np
 import pytest
 
@@ -72,6 +74,19 @@ def test_renumbering_changes_only_rounding(bed, usual, monkeypatch, schedule, un
     assert np.mean(numbers != np.arange(COUNT)) > 0.5
     for name in ("position", "angle", "velocity", "elastic", "contacts"):
         np.testing.assert_allclose(state[name], usual[name], rtol=1e-9, atol=1e-10, err_msg=name)
+
+
+@pytest.mark.slow
+def test_a_world_does_not_feel_that_another_is_renumbered(bed, usual, monkeypatch):
+    """To the last bit: its lists are built when they would be without, and so are its steps chosen."""
+    second_alone = cycle([False, True])
+    monkeypatch.setattr(renumber, "has_mixed", lambda *_: next(second_alone))
+    monkeypatch.setattr(renumber, "FEWEST", 10)
+    monkeypatch.setattr(simulation, "LOOK_FOR_MIXING", 2e-3)
+    state, numbers = shaken(bed)
+    assert np.all(numbers[0] == np.arange(COUNT)) and np.mean(numbers[1] != np.arange(COUNT)) > 0.5
+    for name in ("position", "angle", "velocity", "spin"):
+        assert state[name][0].tobytes() == usual[name][0].tobytes(), name
 
 
 @pytest.mark.slow
