@@ -17,7 +17,7 @@ RESTITUTION, DRAFT_RESTITUTION = 1e-3, 1e-2
 class Level:
     """The settings of a level, and its error in words."""
 
-    stiffness_scale: float  # on Young's moduli, unless contact.stiffness_scale is given
+    stiffness_scale: float  # on Young's moduli, unless contact.stiffness_scale is given; see `stiffness_for`
     longer_steps: float  # factor by which the bounds on the derived step are stretched
     restitution: float  # largest relative error
     beyond: str  # what else is known of its error
@@ -39,6 +39,19 @@ LEVELS = {
     "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80, WAVES.format(0.3, 3, 0.3)),
 }
 DEFAULT = "standard"
+WIDEST = 8.0  # ratio of the masses of grains up to which the levels' stiffness holds: diameters as 1 to 2
+
+
+def stiffness_for(level: Level, diameters: tuple[float, float], densities: Sequence[float]) -> float:
+    """The factor on Young's moduli at a level, for grains from a smallest to a largest diameter (m).
+
+    A small grain on the floor has to stop a large one that falls on it. It is pressed by ξ, (ξ/r)^(5/2) ~ (M/m) ρ v²/E
+    for the masses M and m of the two, while between equal grains ξ/r does not depend on their size. With E in
+    proportion to M/m the smallest grain is pressed no deeper, in its radii, than at WIDEST; a weight at rest, M g times
+    the layers above, presses it less than its fall from there. No grain is stiffer than its material.
+    """
+    ratio = (diameters[1] / diameters[0]) ** 3 * max(densities) / min(densities)
+    return min(1.0, level.stiffness_scale * max(1.0, ratio / WIDEST))
 
 
 def check_forced(step: float, limits: Sequence[Limit], usual: float, force: bool) -> None:

@@ -13,7 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.accuracy import LEVELS
+from lab.preset.accuracy import LEVELS, stiffness_for
 from lab.preset.fields import Of, defaults_of, join, walk
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
@@ -150,8 +150,12 @@ class Preset:
 
     @property
     def stiffness_scale(self) -> float:
-        """The factor on Young's moduli: as given, else that of the level of accuracy."""
-        return self.contact.stiffness_scale or LEVELS[self.run.accuracy].stiffness_scale
+        """The factor on Young's moduli: as given, else by the level of accuracy and the grains' range of masses."""
+        level = LEVELS[self.run.accuracy]
+        if self.contact.stiffness_scale or self.grains is None:
+            return self.contact.stiffness_scale or level.stiffness_scale
+        densities = [self.material.density, *(other.material.density for other in self.others.values())]
+        return stiffness_for(level, self.diameters, densities)
 
     @cached_property
     def duration(self) -> float:

@@ -78,7 +78,8 @@ def _longer_steps(simulation: Simulation) -> Rows:
 def accuracy(preset: Preset) -> Rows:
     """The level of accuracy, and the settings that follow from it unless the preset has its own."""
     level, scale = LEVELS[preset.run.accuracy], preset.stiffness_scale
-    own = "; the preset's own" if scale != level.stiffness_scale else ""
+    own = "" if scale == level.stiffness_scale else "; for grains of such different sizes"
+    own = "; the preset's own" if preset.contact.stiffness_scale else own
     step = f"{level.longer_steps:g} times the derived one" if level.longer_steps != 1.0 else "the derived one"
     return [
         ("level", f"{preset.run.accuracy}: {level.error}"),
@@ -155,7 +156,6 @@ def cautions(recording: Recording) -> Iterator[str]:
 
 def _softened(recording: Recording) -> str:
     """Which key of the preset makes the grains softer."""
-    accuracy = recording.preset.run.accuracy
-    if LEVELS[accuracy].stiffness_scale == recording.preset.stiffness_scale:
-        return f'set by run.accuracy = "{accuracy}"'
-    return "set by contact.stiffness_scale"
+    if recording.preset.contact.stiffness_scale:
+        return "set by contact.stiffness_scale"
+    return f'set by run.accuracy = "{recording.preset.run.accuracy}"'

@@ -21,7 +21,7 @@ class Contact:
     stiffness_scale: Annotated[
         StiffnessScale | None,
         Cheap(),
-        Doc("Factor on Young's moduli, which allows longer steps; set by run.accuracy without it."),
+        Doc("Factor on Young's moduli, which allows longer steps; by run.accuracy and the range of sizes without it."),
     ] = None
     outlines: Annotated[Literal[*CONTACTS], Doc("Contact rule of irregular grains.")] = "continuous"
     nodes: Annotated[
