@@ -46,7 +46,7 @@ def filling_outline(preset: Preset) -> np.ndarray:
     start in a closed one, the walls are extended upwards until the bed has settled.
     """
     outline, grains = np.array(preset.tank.corners), preset.grains
-    if grains.listed or grains.region or not preset.run.settle:
+    if grains.listed or grains.region or not preset.run.settles:
         return outline
     count, largest = grain_count(preset), _farthest(preset)
     low = not (grains.surface == "disturbed" or preset.tank.open_edges)

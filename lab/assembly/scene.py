@@ -61,7 +61,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     if preset.grains:
         check_softness(scene)
     scene.step = _step(preset, scene)
-    if preset.grains and preset.grains.listed and preset.run.settle:  # without settling, overlaps may be intended
+    if preset.grains and preset.grains.listed and preset.run.settles:  # without settling, overlaps may be intended
         position = np.tile(scene.relaxed(position[0]), (worlds, 1, 1))
     return scene, position
 

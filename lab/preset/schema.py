@@ -238,7 +238,7 @@ def _check_of_grains(preset: Preset) -> None:
     if preset.material is None:
         read(Material, {}, "material")  # says which key is missing
     (_check_shapely if preset.shapes else _check_shapeless)(preset)
-    settle, tank = preset.run.settle, preset.tank
+    settle, tank = preset.run.settles, preset.tank
     check_grains(preset.grains, bool(preset.shape_classes), settle)
     check_room(preset.grains, preset.sizes, preset.mean_diameter, tank, _size_key(preset), settle)
     check_dissipation(preset.material, "material", needed=True)
@@ -278,8 +278,8 @@ def _check_shapely(preset: Preset) -> None:
         raise LabError("grains.table: shapes have diameters of their own; give these as shapes.NAME.diameter.")
     if grains.settled_as == "discs" and not all(shape.round for shape in preset.shapes.values()):
         raise LabError("grains.settled_as: discs stand for round outlines only; leave it out, or the descriptors.")
-    if grains.settled_as == "discs" and not preset.run.settle:
-        raise LabError("grains.settled_as: without run.settle no bed is settled; leave out either.")
+    if grains.settled_as == "discs" and not preset.run.settles:
+        raise LabError("grains.settled_as: without run.settle, or without gravity, no bed is settled; leave it out.")
     if grains.surface == "undisturbed":
         raise LabError(
             "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "

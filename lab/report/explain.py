@@ -202,7 +202,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
         ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB{_each(simulation.arrays.bytes, count, what)}"),
         ("recording", _size(frames * worlds * count * 24 / 2**20)),
         ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
-        *([("", settling)] if preset.run.settle and preset.grains else []),
+        *([("", settling)] if preset.run.settles and preset.grains else []),
     ]
 
 

@@ -101,7 +101,7 @@ def _bed(preset) -> str:
     what.append(
         f"listed in {grains.bed.name}" if grains.listed else f"poured, its surface {grains.surface.replace('-', ' ')}"
     )
-    what.append("settled first" if preset.run.settle else "not settled")
+    what.append("settled first" if preset.run.settles else "not settled")
     if preset.shapes:
         turned = grains.orientation
         what.append("turned at random" if turned == "random" else f"all turned by {show(turned, 'rad')} at the start")
@@ -121,10 +121,8 @@ def _cohesion(scene) -> str:
     law, between, radius = COHESION[scene.cohesion](), scene.interfaces[0], scene.mean_radius
     pull = law.coefficients(between)[0] * 0.5 * radius
     weight = 4.0 / 3.0 * pi * radius**3 * scene.grain[0].density * scene.gravity
-    return (
-        f"{scene.cohesion}: {show(pull, 'N')}, {pull / weight:.2g} times a mean grain's weight, "
-        f"across gaps of up to {show(law.range(between), 'm')}"
-    )
+    heavy = f"{pull / weight:.2g} times a mean grain's weight, " if weight else ""
+    return f"{scene.cohesion}: {show(pull, 'N')}, {heavy}across gaps of up to {show(law.range(between), 'm')}"
 
 
 def in_tank(recording: Recording) -> Iterator[str]:

@@ -70,7 +70,7 @@ def settling(preset: Preset) -> Settling:
         return Settling(preset.tank.corners, "", run.rest, run.settle_limit, settle=False)
     outline = tuple(map(tuple, filling_outline(preset).tolist()))
     disc_step = build(_of_discs(preset))[0].step if grains.settled_as == "discs" else None
-    return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settle, grains.reuse_bed, disc_step)
+    return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settles, grains.reuse_bed, disc_step)
 
 
 def _of_discs(preset: Preset) -> Preset:
@@ -89,7 +89,8 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     if not scene.radius.size:  # water starts at rest
         return simulation
     if not how.settle:
-        progress.note("The grains start where they were placed, without settling (run.settle = false).")
+        why = "run.settle = false" if scene.gravity else "run.gravity = 0"
+        progress.note(f"The grains start where they were placed, without settling ({why}).")
         return simulation
     store = BedStore() if how.reuse else None
     keys = [bed_key(simulation, w, position[w], how) for w in range(len(position))] if store else []

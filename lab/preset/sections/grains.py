@@ -95,7 +95,9 @@ class Grains:
 def check_grains(grains: Grains, shaped: bool, settle: bool) -> None:
     """Raise LabError for keys that contradict each other; `shaped`: the grains have shapes, `settle`: they settle."""
     if grains.surface != "slightly-disturbed" and not settle:
-        raise LabError(f"grains.surface: a bed is {grains.surface} by how it settles; leave run.settle true.")
+        raise LabError(
+            f"grains.surface: a bed is {grains.surface} by how it settles; leave run.settle true, with gravity."
+        )
     if grains.bed is not None:
         if grains.surface != "slightly-disturbed":
             raise LabError("grains.surface: says how a bed is poured, but grains.bed lists its grains; leave one out.")

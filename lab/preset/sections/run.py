@@ -55,6 +55,11 @@ class Run:
         Literal["verlet", "symplectic-euler", "gear"], Of("grains"), Doc("Scheme that advances the grains in time.")
     ] = "verlet"
 
+    @property
+    def settles(self) -> bool:
+        """Whether grains settle before the tank moves; without gravity they start where they are placed."""
+        return self.settle and self.gravity > 0.0
+
 
 def duration_of(run: Run, motion: Motion) -> float:
     """The run's duration (s): as given, else until the last motion that has an end is over. Raises LabError."""

@@ -122,13 +122,13 @@ FAULTS = {
         FULL | {"water__flow": {"vortices": "1 m/s"}},
         'water.flow.vortices: they need a tank without walls; set water.periodic = "yz".',
     ),
-    "grains without weight": (
-        GRAINS | {"water": False, "run__gravity": "0 m/s^2"},
-        "run.gravity: water alone can be without weight; leave out [grains], or give some gravity.",
+    "grains in water without weight": (
+        GRAINS | {"run__gravity": "0 m/s^2"},
+        "run.gravity: grains alone or water alone can be without weight; leave out [grains], or give some gravity.",
     ),
     "a ship without weight": (
         {"ship": SHIP, "run__gravity": "0 m/s^2"},
-        "run.gravity: water alone can be without weight; leave out [ship], or give some gravity.",
+        "run.gravity: grains alone or water alone can be without weight; leave out [ship], or give some gravity.",
     ),
     "a periodic ship": (LONG | {"ship": SHIP}, "water.periodic: goes with water alone; leave it or [ship] out."),
     "periodic with air": (LONG | {"air": {}}, "water.periodic: goes with water alone; leave it or [air] out."),

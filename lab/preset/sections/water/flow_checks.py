@@ -22,12 +22,15 @@ class Whole(liquid.Wet, Protocol):
 
 
 def check_weight(preset: Whole) -> None:
-    """Raise LabError for a run without gravity of what is not water alone."""
+    """Raise LabError for a run without gravity of what is not grains alone, or water alone."""
     if preset.run.gravity:
         return
-    for name in ("grains", "ship", "axle", "air"):
+    for name in ("ship", "axle", "air", *(["grains"] if preset.water is not None else [])):
         if getattr(preset, name) is not None:
-            raise LabError(f"run.gravity: water alone can be without weight; leave out [{name}], or give some gravity.")
+            raise LabError(
+                f"run.gravity: grains alone or water alone can be without weight; leave out [{name}], or give some "
+                "gravity."
+            )
 
 
 def check_flow(preset: Whole) -> None:
