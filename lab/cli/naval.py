@@ -87,10 +87,9 @@ def hull(file: Path, out: Path | None, **asked) -> None:
     FILE is a table of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
     station from the keel up), or a matrix of stations and waterlines, or a closed surface as STL (x forward, y to
     starboard, z up, y = 0 in her middle), whose axes are kept in all that is given and written; draughts are from her
-    keel amidships. Masses are in t, fsm in
-    t m, stowage in m3/t, moments of grain in m4; filling is partly-filled, filled or filled-as-loaded; kind is opening
-    or deck. With --weights she is judged by the IS Code, with --wind by its weather criterion, with --grain by the
-    Grain Code, with --points up to the angle of downflooding.
+    keel amidships. Masses are in t, fsm in t m, stowage in m3/t, moments of grain in m4; filling is partly-filled,
+    filled or filled-as-loaded; kind is opening or deck. With --weights she is judged by the IS Code, with --wind by its
+    weather criterion, with --grain by the Grain Code, with --points up to the angle of downflooding.
 
     \b
     cargolab hull wigley.csv

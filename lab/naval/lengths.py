@@ -25,7 +25,7 @@ def between(form: Form, lbp: float | None, lwl: float | None, ap: float) -> Form
         return form
     found = replace(form, length=lbp, aft=ap)
     aft, fore = found.ends
-    if min(fore, form.x[-1]) - max(aft, form.x[0]) < LEAST * whole:
+    if not min(fore, form.x[-1]) - max(aft, form.x[0]) >= LEAST * whole:
         raise LabError(
             f"--lbp: her perpendiculars would be at {aft:.5g} and {fore:.5g} m, and her stations reach from "
             f"{form.x[0]:.5g} to {form.x[-1]:.5g} m; give --ap, the place of the aft one."

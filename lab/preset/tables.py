@@ -91,7 +91,7 @@ def _check_names(names: list[str], needed: Sequence[str], optional: Sequence[str
     known = [*needed, *optional]
     for k, name in enumerate(names):
         if name not in known and "*" not in known:
-            near = get_close_matches(name.lower()[:100], known, n=1)
+            near = get_close_matches(name.lower()[:100], [one for one in known if name not in one.split("_")], n=1)
             hint = f"did you mean {near[0]}?" if near else f"known here: {', '.join(known)}."
             raise LabError(f", line {number}: unknown column {quoted(name)}; {hint}")
         if name in names[:k]:

@@ -46,6 +46,7 @@ def test_draughts_are_those_at_the_perpendiculars_asked_for(tmp_path):
         (("--lbp", "175"), "--lbp: 175 m is no length of a hull whose stations reach over 130 m"),
         (("--lwl", "20"), "--lwl: 20 m is no length"),
         (("--lbp", "100", "--ap", "-65"), "--lbp: her perpendiculars would be at -65 and 35 m"),
+        (("--lbp", "100", "--ap", "nan"), "--lbp: her perpendiculars would be at nan"),
         (("--ap", "10"), "--ap: says where the length between perpendiculars begins; give --lbp, too."),
     ):
         assert words in str(CliRunner().invoke(hull, [*given, *options]).exception)

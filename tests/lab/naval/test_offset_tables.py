@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from lab.assembly.offsets import from_offsets, read_offsets, rows_of
+from lab.assembly.offsets import COLUMNS, from_offsets, read_offsets, rows_of
 from lab.naval.weights import read_weights
+from lab.preset.tables import read_table
 from lab.report.hull import Asked, examine
 from solvers.ship.water import Water
 from tests.oracles.presets import error_of
@@ -123,6 +124,13 @@ def test_fair_lines_leave_a_box_and_its_written_offsets_as_they_are(tmp_path):
     straight, fair = (from_offsets(*np.array(rows, dtype=float).T, curved=curved) for curved in (False, True))
     assert fair.volume == pytest.approx(straight.volume, rel=1e-12)
     assert from_offsets(*np.array(list(rows_of(fair))).T).volume == pytest.approx(straight.volume, rel=1e-9)
+
+
+def test_a_preset_takes_no_breadth_for_half_of_it(tmp_path):
+    path = tmp_path / "hull.csv"
+    path.write_text(columns("station,z,breadth"))
+    told = error_of(read_table, str(path), COLUMNS)
+    assert told.endswith('unknown column "breadth"; known here: station, z, half_breadth.')
 
 
 def test_weights_of_a_spreadsheet(tmp_path):
