@@ -8,7 +8,7 @@ from lab.cli.errors import Commands
 from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import schema
-from lab.cli.runs import explain, resume, run
+from lab.cli.runs import bed, explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
 from lab.cli.sweeps import calibrate, sweep
 
@@ -30,6 +30,7 @@ def main() -> None:
 
 
 for command in (
+    bed,
     bench,
     beside,
     calibrate,

@@ -94,6 +94,31 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
 
 
 @click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="A .csv file.  [default: bed.csv in FOLDER]",
+)
+@click.option("--world", type=int, default=0, show_default=True, help="One of the repeats, from 0.")
+@click.option("--moving", is_flag=True, help="With the grains' velocities; else they are at rest.")
+def bed(folder: Path, out: Path | None, world: int, moving: bool) -> None:
+    """Write the bed of the last picture of the run in FOLDER to a file, from which other runs start.
+
+    \b
+    cargolab bed renders/tilting/quick --out slid.csv
+    and in a preset:   [grains]            [run]
+                       bed = "slid.csv"    settle = false
+    """
+    from lab.runs.bed_file import write_bed
+
+    place = out or (folder if folder.is_dir() else folder.parent) / "bed.csv"
+    count, left = write_bed(folder, place, world, moving)
+    click.echo(f"{place}: {count} grains" + f"; {left} have left the tank and are not in it" * bool(left))
+
+
+@click.command()
 @click.argument("preset")
 @set_option
 def explain(preset: str, overrides: dict) -> None:

@@ -240,7 +240,8 @@ def _check_of_grains(preset: Preset) -> None:
     (_check_shapely if preset.shapes else _check_shapeless)(preset)
     settle, tank = preset.run.settles, preset.tank
     check_grains(preset.grains, bool(preset.shape_classes), settle)
-    check_room(preset.grains, preset.sizes, preset.mean_diameter, tank, _size_key(preset), settle)
+    sizes = preset.sizes, preset.mean_diameter, tank, _size_key(preset)
+    check_room(preset.grains, *sizes, settle, preset.stiffness_scale)
     check_dissipation(preset.material, "material", needed=True)
     check_dissipation(preset.wall, "wall", needed=False)
     check_cohesion(preset.contact.cohesion, preset.material)

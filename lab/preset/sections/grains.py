@@ -126,13 +126,16 @@ def _check_region(grains: Grains) -> None:
         raise LabError(f"grains.region: {error}") from None
 
 
-def check_room(grains: Grains, sizes: Sizes, mean: float, tank: Tank, size_key: str, settle: bool) -> None:
+def check_room(
+    grains: Grains, sizes: Sizes, mean: float, tank: Tank, size_key: str, settle: bool, scale: float
+) -> None:
     """Raise LabError for grains that do not fit or would be too many; `size_key` is the key of their size.
 
-    `mean` is the grains' mean diameter (m); `settle`: whether they settle before the tank moves.
+    `mean` is the grains' mean diameter (m); `settle`: whether they settle before the tank moves; `scale`: the factor on
+    their moduli.
     """
     if grains.listed:
-        check_listed(grains.listed, tank.corners, moving=not settle)
+        check_listed(grains.listed, tank.corners, moving=not settle, scale=scale)
         return
     if (grains.count is None) == (grains.depth is None):
         got = "neither" if grains.count is None else "both"
