@@ -28,7 +28,7 @@ def run(tmp_path):
     ) as writer:
         for now, shift in ((0.0, 0.01), (1.0, 0.0)):
             writer.sample(sample(now, 2))
-            places = np.stack([PLACE + [0.005, 0.0], PLACE + [shift, 0.0]])
+            places = np.stack([np.add(PLACE, [0.005, 0.0]), np.add(PLACE, [shift, 0.0])])
             writer.frame(frame(now, 2, count=4, position=places, velocity=np.stack([0.0 * SPEED, SPEED])))
         writer.close("complete")
     return tmp_path
