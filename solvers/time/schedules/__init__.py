@@ -20,6 +20,7 @@ WORTH_BANDS = 2000
 def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: int, answering: bool = False) -> str:
     """The schedule to use: for "auto" per-grain on a graphics processor, per-band for few large worlds on the CPU.
 
+    So a large world that is alone may have another one, with sums in another order, than among others.
     An `answering` carrier, such as a ship, responds to the load of its whole world at every step. Raises Unavailable
     for it with the per-grain schedule.
     """

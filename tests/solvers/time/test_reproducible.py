@@ -1,4 +1,8 @@
-"""One preset, one result: on any number of threads, with any other worlds, with any skin of the lists."""
+"""One preset, one result: on any number of threads, with any other worlds, with any skin of the lists.
+
+That is of one schedule, and among worlds whose tanks are as fast. By bands, which the schedule auto has for a large bed
+that is alone, sums are in another order; from the highest speed of a launch follows how early pairs are listed.
+"""
 
 import os
 import subprocess
