@@ -58,7 +58,7 @@ def write_page(
         command=command_of(name, quick),
         date=date.today(),
         counts=_counts(rows),
-        kinds=[[kind, *_counts([row for row in rows if row.kind is kind])] for kind in Kind],
+        kinds=[[kind, *_counts([row for row in rows if row.kind == kind])] for kind in Kind],
         source=reports()[name].source,
         level=f"{100.0 * LEVEL:g}",
         limits=QUICK if quick else less,

@@ -5,9 +5,12 @@ from math import radians, tan
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from lab.studies import verify
 from lab.studies.case import Line
+from lab.studies.verify.impacts.chung_ooi import oblique
+from lab.studies.verify.impacts.head_on import erred, normal_impacts
 from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.plain import Tank
 from lab.studies.verify.references import viscoelastic_rebound
@@ -48,6 +51,52 @@ def test_an_error_relative_to_nothing_is_no_line():
     with pytest.raises(ValueError, match="of zero"):
         Line("a quantity", 1.0, 0.0, "by hand", 0.1, "no reason")
     assert Line("a quantity", 0.05, 0.0, "by hand", 0.1, "no reason", relative=False).passed
+
+
+def test_of_what_should_be_at_least_so_much_more_is_no_error():
+    lines = [
+        Line("order", value, 1.0, "theory", 0.2, "noise", relative=False, at_least=True) for value in (3.0, 0.9, 0.7)
+    ]
+    assert [line.passed for line in lines] == [True, True, False]
+    assert lines[0].error == 0.0 and lines[2].error == pytest.approx(-0.3)
+
+
+def test_what_head_on_impacts_may_err_by_is_of_second_order_and_small():
+    """Of Verlet's scheme on Hertz's law alone: a spring of one stiffness would end (π/24) (π/N)² early."""
+    glass = normal_impacts()["test 1, glass"]
+    here, finer = erred(glass), erred(glass, 0.25)
+    for name in ("force", "overlap", "peak_force", "peak_overlap", "duration"):
+        assert 8.0 < getattr(here, name) / getattr(finer, name) < 24.0, name
+    spring = np.pi / 24.0 * (np.pi / here.steps) ** 2
+    assert 0.5 * spring < here.force < 2.0 * spring and finer.steps == pytest.approx(4.0 * here.steps)
+
+
+def test_the_slip_of_a_contact_that_sticks_may_err_by_what_a_leapfrog_errs_by():
+    """Steel of test 5, grazing: s¨ = −ω_t² s, ω_t² ∝ √ξ, by a leapfrog with the derived step and by a 64th of it."""
+    steel = oblique()["test 5, steel"]
+    hertz, step, shear = steel.elastic(), steel.steps()[0], steel.contact[1] / steel.bodies.m_eff
+    path = solve_ivp(
+        lambda _, x: [x[1], -hertz.stiffness / hertz.mass * max(x[0], 0.0) ** 1.5],
+        (0.0, hertz.duration),
+        [0.0, hertz.speed],
+        dense_output=True,
+        rtol=1e-10,
+        atol=1e-16,
+    )
+
+    def left(length: float, onset: float) -> float:
+        """Speed of slip at the end of one of 1 m/s."""
+        slip, speed, time = 0.0, 1.0, -onset * length
+        while time < hertz.duration:
+            time += length
+            slip += min(length, time) * speed  # from touch on
+            overlap = max(path.sol(np.clip(time, 0.0, hertz.duration))[0], 0.0)
+            speed -= length * 3.5 * shear * np.sqrt(overlap) * slip
+        return speed
+
+    wanted = left(step / 64.0, 0.5)
+    worst = max(abs(left(step, onset) - wanted) for onset in (0.1, 0.4, 0.7, 0.9))
+    assert 0.2 * steel.late[0] < worst < steel.late[0]
 
 
 def test_names_of_cases_are_their_own():

@@ -159,7 +159,9 @@ def _rows(words: str, loose: Scan, frozen: Scan) -> list[Row]:
     first, stands, at = _first(loose), _first(frozen), loose.lost(19.0)
     ours = f"from {first:g} mm on" if first else "none up to 30 mm"
     kept = f"from {stands:g} mm on" if stands else "none up to 30 mm"
-    fails = any(len(loose.lost(size)) for size in SEEN)  # else that frozen cargo does not capsize her tells nothing
+    fails = any(
+        len(loose.lost(size)) for size in SEEN if size in loose.amplitudes
+    )  # else that frozen cargo does not capsize her tells nothing
     held = surely(stands is None or stands > 19.0) if fails else None
     kept += "" if fails else "; not judged, loose cargo does not in 17 and 19 mm, either"
     there = len(at) > 0 and max(abs(at[0] - SEEN[19.0][0]), abs(at[-1] - SEEN[19.0][-1])) < 1.5 * STEP
