@@ -225,7 +225,8 @@ def test_ship_that_does_not_stand_is_told_so(files, tmp_path):
     told = []
     for mass, height in ((MASS, 14.0), (3 * MASS, KG)):
         _write(files["weights"], ["name,mass,lcg,tcg,vcg", f"all,{mass},{LENGTH / 2},0,{height}"])
-        given = [str(files["hull"]), "--weights", str(files["weights"]), "--wind", "1500", "10", "--out", str(tmp_path)]
+        given = [str(files["hull"]), "--weights", str(files["weights"]), "--wind", "1500", "10"]
+        given += ["--out", str(tmp_path / "out")]
         told.append(CliRunner().invoke(hull, given))
     high, heavy = told
     assert "none: she comes to rest nowhere" in high.output and "she has none" in high.output
