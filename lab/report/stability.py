@@ -10,6 +10,7 @@ import matplotlib
 from lab import __version__
 from lab.assembly.scene import vessels
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.condition import Condition, condition
@@ -60,7 +61,7 @@ def judge(loaded: LoadedPreset, out: Path | None = None) -> tuple[str, Path]:
 
 def _write(path: Path, text: str) -> None:
     try:
-        path.write_text(text, encoding="utf-8")
+        write_text(path, text)
     except OSError as error:
         raise LabError(f"{path.parent} cannot be written ({error.strerror}): choose another folder.") from error
 

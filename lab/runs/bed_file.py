@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.base.files import write_text
 from lab.preset.bed_file import MOTION, NEEDED
 from lab.recording import Recording, open_recording
 from solvers.grains.bed.filling import clear_of_walls
@@ -33,7 +34,7 @@ def write_bed(folder: Path, out: Path, world: int = 0, moving: bool = False) -> 
         kept = known & clear_of_walls(np.where(known[:, None], rows[:, :2], 0.0), recording.outline, INSIDE * radius)
         head = f"# {recording.name}, bed {world + 1}, {time:.6g} s after its start; m, m/s, rad/s"
     lines = [head, ",".join(names), *(",".join(f"{x:.9g}" for x in row) for row in rows[kept])]
-    out.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_text(out, "\n".join(lines) + "\n")
     return int(kept.sum()), int((~kept).sum())
 
 
