@@ -2,6 +2,7 @@
 
 import sys
 import time
+from threading import Timer
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 
 EVERY = 30.0  # s between two lines of a stage where there is no terminal
+SOON = 5.0  # s after which a stage that has not told anything is excused
+COMPILES = "kernels that are new are compiled first, which may take minutes"
 
 
 class Progress:
@@ -36,6 +39,7 @@ class Progress:
         self.bar = Bar(*columns, console=self.console, disable=not self.live, speed_estimate_period=600.0)
         self.task, self.total, self.cost = None, None, 0.0
         self.stage, self.begun_stage, self.told = "", 0.0, 0.0
+        self.waiting: Timer | None = None
         self.whole, self.done = None, 0.0
         self.warnings: list[str] = []
         self.notes: list[str] = []
@@ -48,6 +52,7 @@ class Progress:
         return self
 
     def __exit__(self, *_) -> None:
+        self._heard()
         self.bar.stop()
 
     def begin_whole(self, name: str, total: float, done: float) -> None:
@@ -68,16 +73,30 @@ class Progress:
         self.stage, self.begun_stage, self.told = stage, time.monotonic(), time.monotonic()
         if not self.live:
             self.say(f"{stage} …")
+            self._excuse(f"{stage}: {COMPILES}")
         self.task, self.total, self.cost = self.bar.add_task(stage, total=total), total, cost
 
     def reach(self, done: float) -> None:
         """Update the bar: `done` of the stage's total. In a log a line says so every half minute."""
+        self._heard()
         self.bar.update(self.task, completed=done)
         if not self.live and self.total and time.monotonic() - self.told >= EVERY:
             self.told = time.monotonic()
             self.say(f"{self.stage}: {100 * done / self.total:.0f} % after {_span(self.told - self.begun_stage)}")
         if self.whole is not None and self.total:
             self.bar.update(self.whole, completed=self.done + self.cost * min(done / self.total, 1.0))
+
+    def _excuse(self, sentence: str) -> None:
+        """Say a sentence unless the stage tells something soon."""
+        self._heard()
+        self.waiting = Timer(SOON, self.say, (sentence,))
+        self.waiting.daemon = True
+        self.waiting.start()
+
+    def _heard(self) -> None:
+        if self.waiting is not None:
+            self.waiting.cancel()
+            self.waiting = None
 
     def watch(self, simulation: "Simulation") -> None:
         """Show beds as they come to rest; does nothing here, the live window overrides it."""
@@ -95,6 +114,7 @@ class Progress:
 
     def finish(self) -> None:
         """End the stage, possibly before its total."""
+        self._heard()
         if self.whole is not None:
             self.done += self.cost
             self.bar.update(self.whole, completed=self.done)

@@ -1,9 +1,9 @@
 """What is said of a run that goes on, where there is no terminal."""
 
-import pytest
+from time import sleep
 
 from lab.base import progress
-from lab.base.progress import EVERY, Progress
+from lab.base.progress import COMPILES, EVERY, Progress
 
 
 def test_a_log_gets_a_line_every_half_minute(monkeypatch, capsys):
@@ -25,4 +25,16 @@ def test_a_log_gets_a_line_every_half_minute(monkeypatch, capsys):
         "settling: 75 % after 2 min",
         "settling: 100 % after 2 min",
     ]
-    assert pytest.approx(30.0) == EVERY
+    assert EVERY == 30.0
+
+
+def test_a_stage_that_tells_nothing_is_excused(monkeypatch, capsys):
+    """By the kernels that it waits for; one that has begun to tell is not."""
+    monkeypatch.setattr(progress, "SOON", 0.05)
+    for waits in (True, False):
+        with Progress(False) as told:
+            told.start("settling", 5.0)
+            if not waits:
+                told.reach(1.0)
+            sleep(0.3)
+    assert capsys.readouterr().err.splitlines() == ["settling …", f"settling: {COMPILES}", "settling …"]
