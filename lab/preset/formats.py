@@ -87,8 +87,9 @@ def recorded(table: Mapping) -> Mapping:
 def _timed(table: Mapping) -> dict:
     """Motions from files had times in seconds, and no key that says so."""
     kept = dict(table)
-    for name in ("motion", "axle"):
-        kept[name] = _in_seconds(kept.get(name), "history" if name == "motion" else "slide")
+    for name, key in {"motion": "history", "axle": "slide"}.items():
+        if name in kept:
+            kept[name] = _in_seconds(kept[name], key)
     if isinstance(kept.get("parts"), Mapping):
         kept["parts"] = {name: _in_seconds(part, "history") for name, part in kept["parts"].items()}
     return kept

@@ -54,9 +54,8 @@ class Stage:
         self._rows, self._time = rows, time
         self._earth = setting.frame == "earth"
         self._named = any(bed.name for bed in beds)
-        self._alike = self._named and bool(
-            np.ptp(pose, axis=1).max(initial=0.0) < STILL
-        )  # no readings beside the names
+        alike = bool(np.ptp(pose, axis=1).max(initial=0.0) < STILL)  # else readings stand behind the names
+        self._may_stand_beside = self._named and alike
         self._sorts = _sort_by_shape(beds)
         self._afloat = self._earth and all(bed.footage.sea for bed in beds)
         self._drift = pose * np.array([self._drifts(bed) for bed in beds])
@@ -272,7 +271,7 @@ class Stage:
             NAME * self._unit * self._named,
             BAND * self._unit * lost,
             filled=afloat and several,
-            beside=self._names_wide() * self._alike * (not afloat),
+            beside=self._names_wide() * (self._may_stand_beside and not afloat),
         )
         return lay_cells(self.grounds, self.setting.box, self._unit, around)
 
