@@ -9,12 +9,12 @@ from solvers.grains.laws.extremes import greater, lesser, within
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
 # The contacts of a grain act on it together: a network of them is as stiff as one contact times the largest eigenvalue
 # of J M⁻¹ Jᵀ, with J from the velocities and spins of the grains to the slips of the contacts, each weighed by the root
-# of its own m_t = (2/7) m_eff. By Gershgorin's theorem that is at most (5/7) Σ m_eff (1/m_i + 1/m_j) over the contacts
-# of two grains that touch, 4.3 where equal spheres touch six others each in a plane. It is no more where sizes differ:
-# of a small grain each contact counts nearly twice, but it has no room for six larger ones; of a large one many small
-# grains count little. With velocities predicted by half a step a damper is stable up to m/Δt, and a damper and a
-# spring with history together while 4 × damper + spring is less than 4. The split damper (`lagging`) is stable while
-# 2 × PROMPT + FOLLOWING is less than 2: in networks up to 5.
+# of its own m_t = (2/7) m_eff. A contact counts with (5/7) m_eff/m to each of its grains; by Gershgorin's theorem these
+# come to 4.3 at most where equal spheres touch six others each in a plane. It is no more where sizes and densities
+# differ (by eigenvalues): to a small grain each contact counts up to twice, but it has no room for six larger ones; to
+# a large one many small grains count little. With velocities predicted by half a step a damper is stable up to m/Δt,
+# and with a spring with history while 4 × damper + spring is less than 4. The split damper (`lagging`) is stable while
+# 2 × PROMPT + FOLLOWING is less than 2, here in networks up to 5.
 AT_ONCE = 0.2
 SPRING = 0.1
 PROMPT, FOLLOWING = 0.1, 0.2
