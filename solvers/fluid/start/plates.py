@@ -11,7 +11,6 @@ from solvers.fluid.start.lattice import from_edges
 from solvers.fluid.start.packing import KEPT, PUSH, Crowd, Packing, area_of, below, relax, scattered
 from solvers.fluid.start.parts import free_share
 from solvers.fluid.walls.layers import layers
-from solvers.fluid.walls.sight import SHARP
 from solvers.fluid.walls.solids import TOUCHES, counter_clockwise, is_solid, line_of, prolonging, sheet
 from solvers.tank.parts import Body, Part
 from solvers.tank.tank import Tank
@@ -21,16 +20,12 @@ UPRIGHT = 1e-6  # sine of the angle to an axis below which a plate counts as par
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A plate from `start` (2,) m along the unit vector `way` (2,), that hides from `low` to `high` (m) on it.
-
-    `sharp` (2,) is over 1/h how sharply that begins and ends.
-    """
+    """A plate from `start` (2,) m along the unit vector `way` (2,), that hides from `low` to `high` (m) on it."""
 
     start: np.ndarray
     way: np.ndarray
     low: float
     high: float
-    sharp: np.ndarray
 
     def of(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """How far (m) the points (n, 2) m are along the plate and to its left."""
@@ -42,8 +37,7 @@ class Line:
         (along, across), (along_b, across_b) = self.of(a), self.of(b)
         crossed = across * across_b < 0.0
         through = along - (along_b - along) * across / np.where(crossed, across_b - across, 1.0)
-        from_ends = np.minimum((through - self.low) * self.sharp[0], (self.high - through) * self.sharp[1])
-        deep = np.clip(from_ends / blur, 0.0, 1.0)
+        deep = np.clip(np.minimum(through - self.low, self.high - through) / blur, 0.0, 1.0)
         return np.where(crossed, deep * deep * (3.0 - 2.0 * deep), 0.0)
 
 
@@ -120,9 +114,7 @@ def _packed(shapes: tuple, level: float, spacing: float, smoothing: float, drawn
     found += [sheet(ends, spacing, rows) for ends in drawn_as]
     dummies, volumes, _ = (np.concatenate(each) for each in zip(*found, strict=True))
     own = [np.full(len(points), q) for q, (points, *_) in enumerate(found[len(found) - len(plates) :])]
-    others = [[part for k, part in enumerate(parts) if k not in members] for members in plates]
-    reach = 2.0 * smoothing * spacing
-    lines = [_line(ends, beside, outline, spacing, reach) for ends, beside in zip(drawn_as, others, strict=True)]
+    lines = [_line(ends, outline, spacing, 2.0 * smoothing * spacing) for ends in drawn_as]
     points = scattered(polygon, holes, count)
     made = points, area / count, dummies, volumes, smoothing * spacing
     crowd = Parted(made, lines, np.concatenate([owner, *own]))
@@ -130,12 +122,9 @@ def _packed(shapes: tuple, level: float, spacing: float, smoothing: float, drawn
     return Packing(crowd.points, area / count, spacing * crowd.pushes(), crowd.covers(), steps)
 
 
-def _line(ends: np.ndarray, parts: Sequence[Part], outline: np.ndarray, spacing: float, reach: float) -> Line:
-    """A plate between two ends (2, 2) m, on into the tank's wall if it touches it, and up to `parts` that it meets."""
+def _line(ends: np.ndarray, outline: np.ndarray, spacing: float, reach: float) -> Line:
+    """A plate between two ends (2, 2) m in a tank, on into whose wall an end reaches that touches it."""
     length = float(np.hypot(*(ends[1] - ends[0])))
-    walled = (from_edges(ends, outline) < TOUCHES * spacing) | ~Tank(outline, 1.0).holds(ends)
-    gap = np.min([from_edges(ends, np.array(part.points)) for part in parts], axis=0, initial=np.inf)
-    joined = gap < TOUCHES * spacing
-    low, high = np.where(walled, reach, np.where(joined, 0.5 * gap, 0.0))
-    sharp = np.where(walled | joined, SHARP, 1.0)
-    return Line(ends[0], (ends[1] - ends[0]) / length, -float(low), length + float(high), sharp)
+    touches = (from_edges(ends, outline) < TOUCHES * spacing) | ~Tank(outline, 1.0).holds(ends)
+    low, high = np.where(touches, reach, 0.0)
+    return Line(ends[0], (ends[1] - ends[0]) / length, -float(low), length + float(high))

@@ -8,7 +8,7 @@ import taichi as ti
 from solvers.fluid.given import Water
 from solvers.fluid.state import UNUSED, Particles
 from solvers.fluid.walls.layers import FAR
-from solvers.fluid.walls.solids import TOUCHES, is_solid, line_of, prolonging, sides_of
+from solvers.fluid.walls.solids import TOUCHES, is_solid, line_of, prolonging
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
@@ -16,11 +16,10 @@ from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 
 Y, Z, COSINE, SINE, V_Y, V_Z, RATE = range(7)  # a pose in the tank: its origin (m), its turn, its velocities
-# A plate: a point (m), its direction, how far (m) from there it hides, and how sharply (1/m) that begins and ends.
-LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH, SHARP_LOW, SHARP_HIGH = range(8)
+# A plate: a point (m), its direction, its ends (m) from there, how far (m) its ends reach on into walls.
+LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH, IN_LOW, IN_HIGH = range(8)
 OF_LINE = 8  # numbers
 REACH, TOUCH, BLUR = range(3)  # of `lengths`
-SHARP = 1e6  # over h: how sharply a plate ends at a wall or a part
 
 
 @ti.data_oriented
@@ -29,19 +28,18 @@ class Sight:
 
     A plate's own dummies, which lie behind it, are seen just by those whose line of sight it crosses. So what is seen
     past the end of a plate and what is seen through it never overlap: their shares are 1 together. An end that touches
-    the tank's wall reaches on into it. One that touches another part reaches half the way there, so that no water
-    passes. Plates in one line that touch and move alike are one plate, with one row of dummies. `plates` are the
-    numbers of the parts of each plate.
+    the tank's wall reaches on into it. Plates in one line that touch and move alike are one plate, with one row of
+    dummies, and no water passes between them. `plates` are the numbers of the parts of each plate.
 
-    Over the last smoothing length h before a free end, which touches nothing, a plate becomes transparent, by χ = x² (3
-    − 2x) at the distance x h from the end: a pair that it parts there counts with 1 − χ, a dummy with χ. Else pairs
-    come and go at once as the line between them passes the end, with forces of many weights, and still water stirs
-    itself for ever: beside a baffle of half its depth, 15 layers, to 0.2 m/s (r.m.s.), where it rests now. Over half of
-    h it begins to move after 3 s, over three halves it rests as well. After the transparent tips of cracks of Organ,
-    Fleming, Terry & Belytschko (1996), Comput. Mech. 18, 225, who lengthen distances there instead.
+    Over the last smoothing length h before a free end a plate becomes transparent, by χ = x² (3 − 2x) at the distance
+    x h from the end: a pair that it parts there counts with 1 − χ, a dummy with χ. Else pairs come and go at once as
+    the line between them passes the end, with forces of many weights, and still water stirs itself for ever: beside a
+    baffle of half its depth, 15 layers, to 0.2 m/s (r.m.s.), where it rests now. Over half of h it begins to move after
+    3 s, over three halves it rests as well. After the transparent tips of cracks of Organ, Fleming, Terry & Belytschko
+    (1996), Comput. Mech. 18, 225, who lengthen distances there instead.
 
-    Limits: so a plate is shorter by some h/2 at a free end, at once when the end leaves a wall, as a gate's does. What
-    lies behind two plates that meet at an angle, past both, is seen by nobody.
+    Limits: so a plate is shorter by some h/2 at a free end, at once when the end leaves a wall, as a gate's does. Ends
+    of plates that meet at an angle, or do not move alike, are free, and so let water pass.
     """
 
     def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int):
@@ -58,11 +56,6 @@ class Sight:
             self.parts = own.holding("parts", np.array(firsts), "plate", ti.i32)
             edges = np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)])
             self.edges, self.outline = len(edges), own.holding("outline", edges, "edge number", own.exact)
-            sides = [sides_of(part.points, is_solid(part)) for part in parts]
-            each_side = np.repeat(np.arange(len(parts)), [len(of_one) for of_one in sides])
-            self.sides = own.holding("sides", np.concatenate(sides), "side number", own.exact)
-            self.of_part, self.borders = own.holding("of_part", each_side, "side", ti.i32), len(each_side)
-            self.of_plate = own.holding("of_plate", self.number_of(each_side), "side", ti.i32)
             each = Axis("world", worlds), Axis("plate", len(self.plates)), Axis("number", 2 * OF_LINE)
             (self.line,) = own.reals(each, "line", kept=False)
 
@@ -88,7 +81,7 @@ class Sight:
 
     @ti.func
     def note_line(self, w, q, poses: ti.template(), part):
-        """Note where a plate is, and whether its ends touch the tank's wall or another part."""
+        """Note where a plate is, and whether its ends touch the tank's wall."""
         first, at, k = OF_LINE * part, 7 * part, self.parts[q]
         cos, sin = poses[w, k, at + COSINE], poses[w, k, at + SINE]
         y = [poses[w, k, at + Y] + cos * self.drawn[q, n] - sin * self.drawn[q, n + 1] for n in ti.static((0, 2))]
@@ -97,41 +90,11 @@ class Sight:
         values = [y[0], z[0], (y[1] - y[0]) / length, (z[1] - z[0]) / length]
         for n in ti.static(range(4)):
             self.line[w, q, first + n] = ti.cast(values[n], self.particles.real)
-        for n in ti.static(range(2)):
-            end = self.ended(w, q, y[n], z[n], poses, at)
-            far = length + end[0] if ti.static(n) else 0.0 - end[0]
-            self.line[w, q, first + LOW + n] = ti.cast(far, self.particles.real)
-            self.line[w, q, first + SHARP_LOW + n] = ti.cast(end[1] / self.lengths[BLUR], self.particles.real)
-
-    @ti.func
-    def ended(self, w, q, y, z, poses: ti.template(), at):
-        """How far (m) plate q hides beyond its end there, and how sharply that ends, over 1/h."""
-        further, sharp = ti.cast(0.0, self.exact), ti.cast(1.0, self.exact)
-        gap = self.gap(w, q, y, z, poses, at)
-        if gap < self.lengths[TOUCH]:
-            further, sharp = 0.5 * gap, SHARP
-        if self.touching(y, z):
-            further, sharp = self.lengths[REACH], SHARP
-        return ti.Vector([further, sharp])
-
-    @ti.func
-    def gap(self, w, q, y, z, poses: ti.template(), at):
-        """How far (m) a point of plate q is from the nearest side of another part, by `poses` from a column on."""
-        nearest = ti.cast(1e30, self.exact)
-        for side in range(self.borders):
-            other = self.of_part[side]
-            if self.of_plate[side] != q:
-                cos, sin = poses[w, other, at + COSINE], poses[w, other, at + SINE]
-                o_y, o_z, d_y, d_z = [self.sides[side, n] for n in ti.static(range(4))]
-                way = [cos * d_y - sin * d_z, sin * d_y + cos * d_z]
-                off = [
-                    y - poses[w, other, at + Y] - cos * o_y + sin * o_z,
-                    z - poses[w, other, at + Z] - sin * o_y - cos * o_z,
-                ]
-                share = ti.max(0.0, ti.min(1.0, dot(off, way) / dot(way, way)))
-                left = [off[a] - share * way[a] for a in ti.static(range(2))]
-                nearest = ti.min(nearest, ti.sqrt(dot(left, left)))
-        return nearest
+        low = ti.select(self.touching(y[0], z[0]), self.lengths[REACH], 0.0)
+        high = ti.select(self.touching(y[1], z[1]), self.lengths[REACH], 0.0)
+        ends = [0.0 - low, length + high, low, high]
+        for n in ti.static(range(4)):
+            self.line[w, q, first + LOW + n] = ti.cast(ends[n], self.particles.real)
 
     @ti.func
     def touching(self, y, z):
@@ -158,6 +121,7 @@ class Sight:
         before = p.wet + self.first[0]
         w, own, other = b // p.stride, b % p.stride - before, jb % p.stride - before
         share, reach = p.ones(), ti.cast(self.lengths[REACH], p.real)
+        sharp = ti.cast(1.0 / self.lengths[BLUR], p.real)
         for q in range(self.count):
             first = ti.static(OF_LINE * part)
             t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
@@ -172,9 +136,8 @@ class Sight:
                 beyond = t_y * apart[1] - t_z * apart[0]
                 least = ti.select(beyond * beyond > 1e-30, beyond, p.ones())
                 through = t_y * y + t_z * z + (t_y * apart[0] + t_z * apart[1]) * ((0.0 - across) / least)
-                low = (through - self.line[w, q, first + LOW]) * self.line[w, q, first + SHARP_LOW]
-                high = (self.line[w, q, first + HIGH] - through) * self.line[w, q, first + SHARP_HIGH]
-                deep = ti.max(0.0, ti.min(1.0, ti.min(low, high)))
+                low, high = self.line[w, q, first + LOW], self.line[w, q, first + HIGH]
+                deep = ti.max(0.0, ti.min(1.0, ti.min(through - low, high - through) * sharp))
                 hidden = ti.select((beyond + across) * across < 0.0, deep * deep * (3.0 - 2.0 * deep), p.zeros())
                 share *= its * hidden + (1.0 - its) * (1.0 - hidden)
         return share
@@ -188,7 +151,7 @@ class Sight:
         for q in range(self.count):
             first = ti.static(OF_LINE * part)
             for n in range(2):
-                if self.line[w, q, first + SHARP_LOW + n] * self.lengths[BLUR] < 2.0:
+                if self.line[w, q, first + IN_LOW + n] == 0.0:
                     way = self.line[w, q, first + LOW + n]
                     y = self.line[w, q, first + LINE_Y] + way * self.line[w, q, first + ALONG_Y]
                     z = self.line[w, q, first + LINE_Z] + way * self.line[w, q, first + ALONG_Z]
