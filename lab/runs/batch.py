@@ -1,7 +1,6 @@
 """Batches: runs whose worlds are simulated together, each with its own recording.
 
-A run's recording does not depend on the other runs of its batch: it has the same bits as that of the run alone by the
-same schedule, if no other has faster tanks or parts, from which margins of the lists follow (`Scene.credible_speed`).
+A recording has the same bits as that of its run alone by the same schedule, unless others have faster tanks or parts.
 """
 
 import time

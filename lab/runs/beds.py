@@ -89,8 +89,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     if not scene.radius.size:  # water starts at rest
         return simulation
     if not how.settle:
-        why = "run.settle = false" if scene.gravity else "run.gravity = 0"
-        progress.note(f"The grains start where they were placed, without settling ({why}).")
+        progress.note("The grains start where they were placed, without settling (run.settle = false, or no gravity).")
         return simulation
     store = BedStore() if how.reuse else None
     keys = [bed_key(simulation, w, position[w], how) for w in range(len(position))] if store else []
