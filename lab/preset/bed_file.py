@@ -28,6 +28,15 @@ def listed(table: Table) -> tuple[Grain, ...]:
     return tuple(zip(*(table.columns.get(name, zero) for name in (*NEEDED, *MOTION)), strict=True))
 
 
+def check_radii(grains: Sequence[Grain]) -> None:
+    """Raise LabError for radii that no grain has."""
+    radius = np.array(grains)[:, 2]
+    wrong = np.flatnonzero(radius < SMALLEST)
+    if len(wrong):
+        least = "greater than 0" if radius[wrong[0]] <= 0.0 else f"at least {SMALLEST:g} m"
+        raise LabError(f"grains.bed: the radius in row {wrong[0] + 1} must be {least} (got {radius[wrong[0]]:g}).")
+
+
 def check_listed(grains: Sequence[Grain], outline: Sequence[Point], moving: bool, scale: float = 1.0) -> None:
     """Raise LabError for grains that no bed can have.
 
@@ -45,10 +54,6 @@ def check_listed(grains: Sequence[Grain], outline: Sequence[Point], moving: bool
 def _check(grains: np.ndarray, outline: np.ndarray, deepest: float) -> None:
     """Raise LabError for invalid grains. Messages count grains from 1, as rows below the header."""
     position, radius = grains[:, :2], grains[:, 2]
-    wrong = np.flatnonzero(radius < SMALLEST)
-    if len(wrong):
-        least = "greater than 0" if radius[wrong[0]] <= 0.0 else f"at least {SMALLEST:g} m"
-        raise LabError(f"grains.bed: the radius in row {wrong[0] + 1} must be {least} (got {radius[wrong[0]]:g}).")
     wrong = np.flatnonzero(np.abs(grains[:, 3:]).max(axis=1) > FASTEST)
     if len(wrong):
         raise LabError(f"grains.bed: the grain in row {wrong[0] + 1} is too fast; look at its numbers and their units.")

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Annotated, Literal
 
 from lab.base.errors import LabError
-from lab.preset.bed_file import MOST, MOTION, NEEDED, Grain, check_listed, listed
+from lab.preset.bed_file import MOST, MOTION, NEEDED, Grain, check_listed, check_radii, listed
 from lab.preset.fields import Columns, Table
 from lab.preset.outline import Point, area, simple_polygon
 from lab.preset.sections.tank import Tank
@@ -101,6 +101,7 @@ def check_grains(grains: Grains, shaped: bool, settle: bool) -> None:
     if grains.bed is not None:
         if grains.surface != "slightly-disturbed":
             raise LabError("grains.surface: says how a bed is poured, but grains.bed lists its grains; leave one out.")
+        check_radii(grains.listed)
         return
     if (grains.distribution == "table") != (grains.table is not None):
         got = "no table" if grains.table is None else f'distribution = "{grains.distribution}"'

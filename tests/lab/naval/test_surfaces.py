@@ -263,7 +263,7 @@ def test_command_shows_what_it_read(tmp_path):
     said = " ".join(answer.output.split())
     assert "L x B x D 130 x 27 x 14 m; x -65 to 65, y -13.5 to 13.5, z -8.6 to 5.4" in said
     assert "volume 49140 m3 by the surface, 49140 by 5 stations; at all draughts within" in said
-    assert "symmetry both sides alike" in said and "AP, FP x -65 and 65 m, her ends" in said
+    assert "symmetry both sides alike" in said and "AP, FP at -65 and 65 m" in said
     assert "draughts from z -8.6 m, her keel amidships" in said
     assert "offsets.csv is from her aft perpendicular (x -65 m) and her base line (z -8.6 m)" in said
     first = (tmp_path / "hydrostatics.csv").read_text().splitlines()[1].split(",")
