@@ -81,8 +81,8 @@ class Levers:
     def reach(self, flooding: float | None = None) -> float:
         """The heel (rad) up to which her levers count: the curve's end, or the `flooding` angle.
 
-        There a ship has entirely lost her stability (2008 IS Code, part B, chapter 3, calculation of stability curves);
-        0 if an opening is under water as she lies.
+        Areas of the 2008 IS Code end at that angle (part A, 2.2.1); the other rows are judged alike, since water enters
+        the hull beyond it. 0 if an opening is under water as she lies.
         """
         last = float(self.heel[-1])
         if flooding is None or flooding >= last:
