@@ -7,8 +7,8 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
-from lab.preset.sections.water.liquid import bounds, centre_of_flow, liquid
-from lab.preset.sections.water.tanks import Pool, pools
+from lab.preset.sections.water.liquid import bounds, centre_of_flow
+from lab.preset.sections.water.tanks import Pool
 from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
 from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.air import air_above, air_round, with_air
@@ -33,9 +33,9 @@ def water_of(preset: Preset) -> dict:
 
     Its density is that without pressure (`uncompressed`): the preset's is that of the water as it starts, in the mean.
     """
-    drops = {pool.number: drops_of(preset, pool) for pool in pools(preset)}
+    drops = {pool.number: drops_of(preset, pool) for pool in preset.pools}
     fills = tuple(len(drops.get(number, ())) for number in range(1 + len(preset.tanks)))
-    water, all_drops = replace(liquid(preset), fills=fills if len(fills) > 1 else ()), np.concatenate([*drops.values()])
+    water, all_drops = replace(preset.liquid, fills=fills if len(fills) > 1 else ()), np.concatenate([*drops.values()])
     if water.model == "sph":  # else particles are not compressed
         share = np.concatenate([np.full(len(of_tank), _along(preset, number)) for number, of_tank in drops.items()])
         wet = _wet(all_drops[None])
@@ -45,8 +45,8 @@ def water_of(preset: Preset) -> dict:
 
 def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     """The particles (n, 6) of the water in a tank, by default the first. Raises LabError if none fits in."""
-    pool = pool or pools(preset)[0]
-    water = liquid(preset)
+    pool = pool or preset.pools[0]
+    water = preset.liquid
     parts = [part.wet for part in preset.parts.values()]
     beside = parts if water.start == "packed" and any(map(is_slanted, parts)) and not water.periodic else []
     if (parts and not beside) or water.periodic:  # a lattice is cut off at bodies and upright plates, or goes on across
@@ -68,7 +68,7 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
 
 def _set_going(preset: Preset, drops: np.ndarray) -> None:
     """Give particles (n, 6) the velocities and the pressure of the flow that they start with."""
-    flow, water, place = preset.water.flow, liquid(preset), drops[:, [Y, Z]]
+    flow, water, place = preset.water.flow, preset.liquid, drops[:, [Y, Z]]
     if flow.free:
         drops[:, VELOCITY] = stirred(place - centre_of_flow(preset), flow.strain, flow.rotation)
         rate = flow.strain**2 - flow.rotation**2 + flow.pull**2
@@ -90,7 +90,7 @@ def _air_of(preset: Preset, water: Water) -> np.ndarray:
 
 def _let_go(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> None:
     """Give each of the particles (n, 6) of a region the density of its depth, none where it stands on nothing."""
-    water, (polygon, level), place = liquid(preset), bounds(preset), drops[:, [Y, Z]]
+    water, (polygon, level), place = preset.liquid, bounds(preset), drops[:, [Y, Z]]
     tank = Tank(np.array(preset.tank.corners), preset.thickness, preset.tank.open_edges)
     depth, weight = depths(place, polygon, level, tank, parts, water.spacing), Reduced.weight(water, preset.run.gravity)
     drops[:, EXCESS] = hydrostatic_excess(depth, weight, water.sound_speed, water.state)
@@ -98,7 +98,7 @@ def _let_go(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> None:
 
 def _cut_off(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> np.ndarray:
     """Those of the particles (n, 6) of a lattice that parts leave free."""
-    water, (polygon, level) = liquid(preset), bounds(preset)
+    water, (polygon, level) = preset.liquid, bounds(preset)
     whole = drops[:, VOLUME].sum()
     drops = drops[clear_of(drops[:, [Y, Z]], parts, water.spacing)]
     if not len(drops):
@@ -110,7 +110,7 @@ def _cut_off(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> np.nda
 def water_aboard(preset: Preset) -> Body:
     """The water in a ship's tanks as if it were frozen, per metre of her length, in the hull's axes."""
     bodies = []
-    for pool in pools(preset) if preset.water and preset.ship else ():
+    for pool in preset.pools if preset.water and preset.ship else ():
         share = _along(preset, pool.number)
         area, centre, turning = moments(below(pool.polygon, pool.level))
         mass = share * preset.water.density * area
@@ -130,10 +130,10 @@ def most_drops(preset: Preset) -> int:
     if preset.water is None:
         return 0
     if preset.air is not None:
-        size = np.ptp(np.array(preset.tank.corners), axis=0) / liquid(preset).spacing
+        size = np.ptp(np.array(preset.tank.corners), axis=0) / preset.liquid.spacing
         return int(np.prod(np.ceil(size + 1.0)))
-    size, count = liquid(preset).spacing, 0
-    for pool in pools(preset):
+    size, count = preset.liquid.spacing, 0
+    for pool in preset.pools:
         count += int(np.ceil(np.ptp(pool.polygon[:, 0]) / size + 1.0) * np.ceil(pool.depth / size + 1.0))
     return count
 

@@ -9,7 +9,7 @@ import numpy as np
 from lab.measures.drawing import Sheet
 from lab.measures.motion import driving, soft_start
 from lab.measures.value import Value, over_worlds
-from lab.preset.sections.water.liquid import liquid, parted
+from lab.preset.sections.water.liquid import parted
 from lab.preset.units import show
 from lab.recording import Recording
 
@@ -44,7 +44,7 @@ def pushes(recording: Recording) -> np.ndarray:
 
     The first sample is the mean of nothing yet; it has what the second has.
     """
-    edges, corners = list(liquid(recording.preset).edges), np.array(recording.preset.tank.corners)
+    edges, corners = list(recording.preset.liquid.edges), np.array(recording.preset.tank.corners)
     along = (np.roll(corners, -1, axis=0) - corners)[edges]
     outwards = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.linalg.norm(along, axis=1)[:, None]
     found = (recording.series["edge_force"] * outwards).sum(axis=-1)

@@ -15,7 +15,7 @@ from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import grain_mass
 from lab.preset.schema import Preset
-from lab.preset.sections.water.tanks import outline_of, pools
+from lab.preset.sections.water.tanks import outline_of
 from lab.recording import Recording
 from solvers.fluid.start.packing import below
 from solvers.machine.errors import Unavailable
@@ -74,7 +74,7 @@ def _with_level_water(preset: Preset, vessel: Vessel, heels: np.ndarray) -> np.n
     moved, tanks = np.zeros((len(heels), 2)), [preset.tank, *preset.tanks.values()]
     outlines = [np.array(preset.tank.corners), *(outline_of(preset, tank) for tank in preset.tanks.values())]
     try:
-        for pool in pools(preset):
+        for pool in preset.pools:
             along = tanks[pool.number].length
             share = along / preset.ship.length if along else 1.0
             hold, area = Section(outlines[pool.number]), moments(below(pool.polygon, pool.level))[0]

@@ -14,7 +14,7 @@ import numpy as np
 
 from lab.preset.schema import Preset
 from lab.preset.sections.tank import Tank
-from lab.preset.sections.water.tanks import outline_of, pools
+from lab.preset.sections.water.tanks import outline_of
 
 TOUCH = 1e-9  # of the tank's size: so far below its level the surface is cut, so that corners do not lie in it
 
@@ -37,7 +37,7 @@ def free_surfaces(preset: Preset) -> list[FreeSurface]:
     names, tanks = ["tank", *(f"tanks.{name}" for name in preset.tanks)], [preset.tank, *preset.tanks.values()]
     return [
         _surface(names[pool.number], tanks[pool.number], _outline(preset, pool.number), pool.level, preset)
-        for pool in pools(preset)
+        for pool in preset.pools
         if pool.number or not preset.water.full
     ]
 

@@ -7,7 +7,6 @@ import numpy as np
 from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.schema import Preset
-from lab.preset.sections.water.tanks import pools
 from solvers.ship.linear import impedance
 from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.potential.sloshing import SloshingLiquid
@@ -35,7 +34,7 @@ def linear_motion(preset: Preset, omega: np.ndarray) -> np.ndarray:
     table = table_in_calm(preset).at(omega)
     whole = impedance(ship, ship.load.section, ship.load.water, given.heave, table)
     tanks = [preset.tank, *preset.tanks.values()]
-    for pool in pools(preset) if preset.water else ():
+    for pool in preset.pools if preset.water else ():
         along = tanks[pool.number].length
         share = along / given.length if along else 1.0
         low, high = pool.polygon.min(axis=0), pool.polygon.max(axis=0)

@@ -35,9 +35,11 @@ from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.air_checks import check_air
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.flow_checks import check_weight
+from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.solids import check_solids
-from lab.preset.sections.water.tanks import check_tanks
+from lab.preset.sections.water.tanks import Pool, check_tanks, pools
+from solvers.fluid import given as fluid
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval
@@ -156,6 +158,16 @@ class Preset:
             return self.contact.stiffness_scale or level.stiffness_scale
         densities = [self.material.density, *(other.material.density for other in self.others.values())]
         return stiffness_for(level, self.diameters, densities)
+
+    @cached_property
+    def liquid(self) -> fluid.Water:
+        """The water as the solver takes it. Raises LabError."""
+        return liquid(self)
+
+    @cached_property
+    def pools(self) -> tuple[Pool, ...]:
+        """The water of each tank that has some, in the axes of the first tank; the first tank's is first."""
+        return pools(self)
 
     @cached_property
     def duration(self) -> float:

@@ -13,7 +13,7 @@ from lab.measures.water_residual import residual
 from lab.preset.accuracy import LEVELS
 from lab.preset.schema import Preset
 from lab.preset.sections.water.air import REAL_SOUND
-from lab.preset.sections.water.liquid import centre_of_flow, depth, expected_speed, layers, liquid, parted
+from lab.preset.sections.water.liquid import centre_of_flow, depth, expected_speed, layers, parted
 from lab.preset.units import show
 from lab.recording import Recording
 from lab.report.numbers import count_of
@@ -128,7 +128,7 @@ def _error(count: int) -> str:
 
 def in_tank(recording: Recording) -> Iterator[str]:
     """What a summary says of the water, a line each."""
-    preset, water = recording.preset, liquid(recording.preset)
+    preset, water = recording.preset, recording.preset.liquid
     worlds, count = recording.volume.shape
     yield f"{count_of(worlds, 'tank')} with {count} particles of water, {_size(preset, water)}"
     yield _sound(preset, water)
@@ -150,7 +150,7 @@ def in_tank(recording: Recording) -> Iterator[str]:
 
 def facts(recording: Recording) -> dict[str, object]:
     """The numbers of a summary for programs, in SI."""
-    water, names, scene = liquid(recording.preset), pressure_gauges(recording), _scene(recording.preset)
+    water, names, scene = recording.preset.liquid, pressure_gauges(recording), _scene(recording.preset)
     found = len(recording.series["time"])
     peaks = {name: _peak(recording, k) for k, name in enumerate(names)} if found else {}
     return {
@@ -169,7 +169,7 @@ def cautions(recording: Recording) -> Iterator[str]:
     """What a reader must know about how the water was computed."""
     series = recording.series
     dense = series["water_dense"].max(initial=0.0)
-    water = liquid(recording.preset)
+    water = recording.preset.liquid
     softer = (REAL_SOUND / water.air.sound_speed) ** 2 if water.air else 1.0
     if softer > SOFT:
         yield (

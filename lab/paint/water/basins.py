@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.preset.schema import Preset
-from lab.preset.sections.water.tanks import further_tanks, pools
+from lab.preset.sections.water.tanks import further_tanks
 from solvers.fluid.start.packing import area_of, below
 
 GAP = 0.08  # of a tank's height, between tanks that are drawn one above the other
@@ -51,7 +51,7 @@ def _drops(preset: Preset, volume: np.ndarray) -> dict[int, slice]:
         return {}
     if not preset.tanks:
         return {0: slice(0, volume.shape[1])}
-    filled = pools(preset)
+    filled = preset.pools
     areas = np.cumsum([area_of(below(pool.polygon, pool.level)) for pool in filled])
     share = np.cumsum(volume[0]) / volume[0].sum() * areas[-1]
     ends = np.searchsorted(share, areas * (1.0 - 1e-9)) + 1

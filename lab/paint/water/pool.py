@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lab.preset.schema import Preset
-from lab.preset.sections.water.liquid import liquid, parted
+from lab.preset.sections.water.liquid import parted
 from solvers.fluid.given import Gauge, Level
 
 
@@ -25,7 +25,7 @@ class Pool:
         """The water of a preset with the volumes (W, n) m² of its particles, and of air's; None without water."""
         if preset.water is None:
             return None
-        water, (gauges, levels, _) = liquid(preset), parted(preset.gauges)
+        water, (gauges, levels, _) = preset.liquid, parted(preset.gauges)
         of_gauges = dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True))
         return cls(volume, *of_gauges, air, preset.water.flow is not None)
 

@@ -11,7 +11,6 @@ from lab.assembly.water import air_volumes_of, drops_of, updates, volumes_of
 from lab.preset.merge import merged, nested
 from lab.preset.recorded import from_table, to_table
 from lab.preset.schema import Preset, resolve
-from lab.preset.sections.water.liquid import liquid
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Y, Z
 from solvers.fluid.phases.adiabatic import Adiabatic, background
 from solvers.fluid.phases.cohesion import Cohesion
@@ -48,21 +47,21 @@ def fault(**overrides) -> str:
 
 
 def test_the_air_has_the_sound_of_the_water_or_its_own():
-    water = liquid(airy())
+    water = airy().liquid
     assert water.air.sound_speed == water.sound_speed and water.air.density == 1.2
-    assert liquid(airy(air__sound_speed="real")).air.sound_speed == 343.0
-    assert liquid(airy(air__sound_speed="50 m/s")).air.sound_speed == 50.0
-    assert liquid(airy(air=False)).air is None
-    assert liquid(airy(water__alpha=0.03)).air.alpha == 0.03
+    assert airy(air__sound_speed="real").liquid.air.sound_speed == 343.0
+    assert airy(air__sound_speed="50 m/s").liquid.air.sound_speed == 50.0
+    assert airy(air=False).liquid.air is None
+    assert airy(water__alpha=0.03).liquid.air.alpha == 0.03
 
 
 def test_air_that_becomes_stiff_begins_with_the_sound_of_the_water():
     """Both have one background, that of the softer, and the soft air has the mass of the stiff one."""
     late = {**REAL, "air__stiff_from": "0.75 s"}
-    water = liquid(airy(**late))
+    water = airy(**late).liquid
     assert (water.air.sound_speed, water.air.soft_speed, water.air.stiff_from) == (343.0, water.sound_speed, 0.75)
     assert water.softened.air.sound_speed == water.sound_speed
-    assert water.background == liquid(airy()).background < liquid(airy(**REAL)).background
+    assert water.background == airy().liquid.background < airy(**REAL).liquid.background
     masses = [drops[:, VOLUME] @ ((1.0 + drops[:, EXCESS]) * drops[:, GAS]) for drops in map(drops_of, made(late))]
     assert masses[0] == pytest.approx(masses[1], rel=1e-9) and masses[2] < (1.0 - 1e-3) * masses[1]
 
@@ -149,11 +148,11 @@ def test_what_cannot_be_is_one_sentence_with_its_key(overrides, key):
 
 def test_the_source_scheme_has_air_with_cohesion():
     """Smoothing of its two-phase runs, X = 1.5 g L (ρ_w − ρ_a) with the depth for L, no other background."""
-    made = liquid(airy(water__scheme="as_P", air__sound_speed="real"))
-    assert made.smoothing == 1.34 and liquid(airy(water__scheme="as_P", air=False)).smoothing == 1.70
+    made = airy(water__scheme="as_P", air__sound_speed="real").liquid
+    assert made.smoothing == 1.34 and airy(water__scheme="as_P", air=False).liquid.smoothing == 1.70
     assert made.air.interface == "cohesion" and made.background == 0.0
     assert made.air.cohesion == pytest.approx(1.5 * 9.81 * 0.1 * (1000.0 - 1.2), rel=1e-3)
-    assert liquid(airy(water__scheme="as_P", air__interface="weighted")).air.cohesion == 0.0
+    assert airy(water__scheme="as_P", air__interface="weighted").liquid.air.cohesion == 0.0
 
 
 def test_cohesion_softens_air_and_bounds_its_sound():
@@ -165,24 +164,24 @@ def test_cohesion_softens_air_and_bounds_its_sound():
 
 def test_air_bears_suction_unless_the_preset_says_else():
     """0.3 ρ c²/1.4 of the air, at most ρ U² (or what a heavy one draws) or 0.02 ρ c² of the water; none without air."""
-    sound = liquid(airy()).sound_speed
-    assert liquid(airy()).background == pytest.approx(0.3 * 1.2 * sound**2 / 1.4)
+    sound = airy().liquid.sound_speed
+    assert airy().liquid.background == pytest.approx(0.3 * 1.2 * sound**2 / 1.4)
     real = airy(air__sound_speed="real", water__sound_speed="12 m/s")
-    assert liquid(real).background == pytest.approx(1000.0 * liquid(real).speed ** 2)
-    assert background(liquid(real).air, replace(liquid(real), speed=0.0)) == pytest.approx(0.02 * 1000.0 * 12.0**2)
+    assert real.liquid.background == pytest.approx(1000.0 * real.liquid.speed**2)
+    assert background(real.liquid.air, replace(real.liquid, speed=0.0)) == pytest.approx(0.02 * 1000.0 * 12.0**2)
     heavy = airy(tank__height="300 mm", air__density="500 kg/m^3")  # 0.2 m of it hang below the lid
-    assert liquid(heavy).background == pytest.approx(500.0 * (9.81 * 0.2 + liquid(heavy).speed ** 2), rel=1e-3)
-    assert liquid(airy(water__background_pressure="0 Pa")).background == 0.0
-    assert liquid(airy(air=False)).background == 0.0
+    assert heavy.liquid.background == pytest.approx(500.0 * (9.81 * 0.2 + heavy.liquid.speed**2), rel=1e-3)
+    assert airy(water__background_pressure="0 Pa").liquid.background == 0.0
+    assert airy(air=False).liquid.background == 0.0
     taut = airy(air__surface_tension="1 N/m")
-    assert liquid(taut).background == pytest.approx(3.0 * 0.743 / liquid(taut).length, rel=1e-3)
+    assert taut.liquid.background == pytest.approx(3.0 * 0.743 / taut.liquid.length, rel=1e-3)
 
 
 def test_pressures_over_those_of_a_heavy_fluid():
     """Reduced, nothing hangs below the lid: the background bears less, and the upper fluid has no pressure at rest."""
     heavy = {"tank__height": "300 mm", "air__density": "500 kg/m^3"}
-    whole, reduced = liquid(airy(**heavy)), airy(**heavy, air__reduced=True)
-    made = liquid(reduced)
+    whole, reduced = airy(**heavy).liquid, airy(**heavy, air__reduced=True)
+    made = reduced.liquid
     assert made.air.reduced == pytest.approx(0.1) and whole.air.reduced is None
     assert made.background == pytest.approx(
         max(1000.0 * made.speed**2, 500.0 * (9.81 * made.length + made.speed**2)), rel=1e-6

@@ -5,7 +5,7 @@ import pytest
 
 from lab.assembly.water import drops_of
 from lab.preset.find import load
-from lab.preset.sections.water.liquid import expected_speed, liquid
+from lab.preset.sections.water.liquid import expected_speed
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Y, Z
 from solvers.fluid.start.flow import vortices
 from tests.lab.preset.test_preset_water import COLUMN, GATE, GRAINS, SHIP, fault, wet
@@ -22,7 +22,7 @@ LONG = {"water__periodic": "y", "water__spacing": "20 mm"}
 def test_a_drop_starts_with_its_flow_and_the_pressure_that_this_takes():
     """u = σ (y, −z) about its middle, and p = ρ (σ² + Ω²)(R² − r²)/2."""
     preset = wet(**SWUNG)
-    drops, water = drops_of(preset), liquid(preset)
+    drops, water = drops_of(preset), preset.liquid
     arm = drops[:, [Y, Z]] - [0.1, 0.25]
     assert drops[:, VOLUME].sum() == pytest.approx(np.pi * 0.1**2, rel=1e-3)
     np.testing.assert_allclose(drops[:, [VELOCITY_Y, VELOCITY_Z]], 2.0 * arm * [1.0, -1.0], atol=1e-9)
@@ -49,12 +49,12 @@ def test_a_turning_region_is_under_suction():
     drops = drops_of(preset)
     arm = drops[:, [Y, Z]] - [0.0, 0.25]
     np.testing.assert_allclose(drops[:, VELOCITY_Y], -5.0 * arm[:, 1], atol=1e-9)
-    assert drops[:, EXCESS].min() * liquid(preset).sound_speed ** 2 == pytest.approx(-25.0 * 0.04 * 0.147, rel=0.02)
+    assert drops[:, EXCESS].min() * preset.liquid.sound_speed**2 == pytest.approx(-25.0 * 0.04 * 0.147, rel=0.02)
 
 
 def test_vortices_fill_a_periodic_tank():
     preset = wet(**ROUND, water__flow={"vortices": "0.5 m/s"}, tank__width="1 m")
-    drops, water = drops_of(preset), liquid(preset)
+    drops, water = drops_of(preset), preset.liquid
     assert (water.periodic, water.walls) == (("y", "z"), False) and len(drops) == 50 * 25
     flow = 0.5 * vortices(drops[:, [Y, Z]] - [-0.5, 0.0], (1.0, 0.5))
     np.testing.assert_allclose(drops[:, [VELOCITY_Y, VELOCITY_Z]], flow)
@@ -62,7 +62,7 @@ def test_vortices_fill_a_periodic_tank():
 
 def test_a_periodic_pool_keeps_its_floor_and_weight():
     preset = wet(**LONG, tank__width="1 m")
-    assert (liquid(preset).periodic, liquid(preset).walls) == (("y",), True)
+    assert (preset.liquid.periodic, preset.liquid.walls) == (("y",), True)
     assert drops_of(preset)[:, EXCESS].max() > 0.0
     channel = wet(**ROUND | {"water__periodic": "z", "run__gravity": "0.4 m/s^2"})
     assert not drops_of(channel)[:, EXCESS].any()  # it flows down without end

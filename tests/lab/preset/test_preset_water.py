@@ -9,7 +9,7 @@ from lab.assembly.water import drops_of
 from lab.preset.merge import merged, nested
 from lab.preset.recorded import from_table, resolved_from, to_table
 from lab.preset.schema import Preset, resolve
-from lab.preset.sections.water.liquid import depth, expected_speed, liquid, spacing, tank_speed
+from lab.preset.sections.water.liquid import depth, expected_speed, spacing, tank_speed
 from lab.preset.sections.water.schemes import SCHEMES
 from solvers.fluid.given import EXCESS, VOLUME, Y, Z
 from tests.oracles.presets import error_of
@@ -62,30 +62,30 @@ def test_the_level_of_accuracy_sets_the_spacing_only_where_none_is_given(level, 
 
 def test_the_sound_is_ten_times_the_fastest_wave_column_or_tank():
     calm = wet()
-    assert liquid(calm).sound_speed == pytest.approx(10.0 * (9.81 * 0.1) ** 0.5)
+    assert calm.liquid.sound_speed == pytest.approx(10.0 * (9.81 * 0.1) ** 0.5)
     fast = wet(motion__sway={"amplitude": "1 m", "frequency": "1 Hz"})
     assert expected_speed(fast) == pytest.approx(tank_speed(fast)) == pytest.approx(6.2832, rel=1e-4)
     rolled = wet(motion__roll={"amplitude": "30 deg", "frequency": "1 Hz"})
     assert tank_speed(rolled) == pytest.approx(0.5236 * 6.2832 * (0.45**2 + 0.5**2) ** 0.5, rel=1e-4)  # of a corner
     column = wet(water__region=COLUMN)
     assert depth(column) == pytest.approx(0.3)
-    assert liquid(column).sound_speed == pytest.approx(20.0 * (9.81 * 0.3) ** 0.5)
-    assert liquid(wet(water__sound_speed="12 m/s")).sound_speed == 12.0
+    assert column.liquid.sound_speed == pytest.approx(20.0 * (9.81 * 0.3) ** 0.5)
+    assert wet(water__sound_speed="12 m/s").liquid.sound_speed == 12.0
 
 
 def test_a_scheme_gives_what_is_not_given():
-    source = liquid(wet(water__scheme="as_P"))
+    source = wet(water__scheme="as_P").liquid
     assert (source.state, source.diffusion, source.viscosity, source.alpha) == ("tait", "molteni", "approaching", 0.07)
     assert source.smoothing == 1.70 and source.sound_speed == pytest.approx(60.0 * (9.81 * 0.1) ** 0.5)
-    mixed = liquid(wet(water__scheme="as_P", water__alpha=0.0, water__kernel="wendland-c4", water__delta=0.05))
+    mixed = wet(water__scheme="as_P", water__alpha=0.0, water__kernel="wendland-c4", water__delta=0.05).liquid
     assert (mixed.alpha, mixed.kernel, mixed.delta, mixed.state) == (0.0, "wendland-c4", 0.05, "tait")
-    assert liquid(wet(water__scheme="as_K")).sound_speed == 10.0
+    assert wet(water__scheme="as_K").liquid.sound_speed == 10.0
     assert set(SCHEMES) == {"lab", "as_P", "as_K", "as_F"}
 
 
 def test_gauges_are_handed_on_in_their_order():
     level, pressure = {"kind": "level", "y": "100 mm"}, {"place": ["450 mm", "20 mm"], "response": "1 ms"}
-    water = liquid(wet(gauges={"B": level, "A": pressure, "C": {"place": ["0 mm", "0 mm"], "length": "5 mm"}}))
+    water = wet(gauges={"B": level, "A": pressure, "C": {"place": ["0 mm", "0 mm"], "length": "5 mm"}}).liquid
     assert [(gauge.place, gauge.length, gauge.response) for gauge in water.gauges] == [
         ((0.45, 0.02), 0.0, 0.001),
         ((0.0, 0.0), 0.005, 0.0),
@@ -330,7 +330,7 @@ def test_water_leaves_room_for_bodies_and_stands_at_its_level_on_either_side_of_
     steps = [["-450 mm", "0 mm"], ["450 mm", "0 mm"], ["450 mm", "50 mm"], ["0 mm", "50 mm"], ["0 mm", "100 mm"]]
     region = {"water__depth": False, "water__region": [*steps, ["-450 mm", "100 mm"]]}
     drops = drops_of(wet(parts__gate=GATE, **given, **region))
-    sound = liquid(wet(parts__gate=GATE, **given, **region)).sound_speed
+    sound = wet(parts__gate=GATE, **given, **region).liquid.sound_speed
     level = np.where(drops[:, Y] < 0.0, 0.1, 0.05)
     np.testing.assert_allclose(np.log1p(drops[:, EXCESS]) * sound**2, 10.0 * (level - drops[:, Z]), rtol=1e-9)
 
@@ -340,7 +340,7 @@ def test_water_is_packed_beside_slanted_plates_and_cut_from_a_lattice_beside_oth
     for top, packs in (("0 mm", False), ("40 mm", True)):
         plate = {"points": [["0 mm", "0 mm"], [top, "60 mm"]]}
         made = wet(parts__baffle=plate, water__spacing="10 mm", run__gravity="10 m/s^2")
-        drops, sound = drops_of(made), liquid(made).sound_speed
+        drops, sound = drops_of(made), made.liquid.sound_speed
         assert (len(np.unique(np.round(drops[:, Z], 6))) > 100) == packs
         assert drops[:, VOLUME].sum() == pytest.approx(0.9 * 0.1, rel=1e-9)
         np.testing.assert_allclose(np.log1p(drops[:, EXCESS]) * sound**2, 10.0 * (0.1 - drops[:, Z]), rtol=1e-9)

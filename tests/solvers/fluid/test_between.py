@@ -7,7 +7,6 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.preset.find import load
-from lab.preset.sections.water.liquid import liquid
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME
 from solvers.fluid.walls.between import RATES, SHARES, Between
 from solvers.motion.harmonic import Roll, Sway
@@ -145,9 +144,9 @@ def test_walls_that_cannot_be_are_told(changes, words):
 
 
 def test_walls_are_a_tanks_length_apart_where_it_has_one():
-    water = liquid(load("sloshing/roll-damper-glycerine", {"axle.length": "0.5 m"}).resolved)
+    water = load("sloshing/roll-damper-glycerine", {"axle.length": "0.5 m"}).resolved.liquid
     assert water.apart == 0.5
-    assert liquid(load("sloshing/roll-damper-glycerine").resolved).apart == 0.062
+    assert load("sloshing/roll-damper-glycerine").resolved.liquid.apart == 0.062
 
 
 @pytest.mark.parametrize(

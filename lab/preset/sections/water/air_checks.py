@@ -7,7 +7,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.sections.axle import Axle
 from lab.preset.sections.water.air import Air
-from lab.preset.sections.water.liquid import Wet, depth, liquid
+from lab.preset.sections.water.liquid import Wet, depth
 from lab.preset.units import needed, show
 from solvers.fluid.phases.adiabatic import GAMMA
 from solvers.fluid.phases.cohesion import Cohesion
@@ -42,11 +42,11 @@ def check_air(preset: Whole) -> None:
         raise LabError(
             'water.shifting: "delta-plus-momentum" is for water alone; take "delta-plus", or leave out [air].'
         )
-    _check_viscosity(air, liquid(preset).viscosity)
+    _check_viscosity(air, preset.liquid.viscosity)
     if air.density > water.density:
         raise LabError(f"air.density: {show(air.density, 'kg/m^3')} is more than that of the water; take less.")
     room = tank.extent[1] - (depth(preset) if water.shape is None else 0.0)
-    if room < liquid(preset).spacing:
+    if room < preset.liquid.spacing:
         raise LabError(
             "air: the water leaves it no room of a particle's height; take less water, or smaller particles."
         )
@@ -57,7 +57,7 @@ def check_air(preset: Whole) -> None:
 
 def _check_stiffening(preset: Whole) -> None:
     """Raise LabError for air that cannot become stiff: is so already, never will be, or is not in a tank by itself."""
-    air, made, key = preset.air, liquid(preset), f"air.stiff_from: {show(preset.air.stiff_from, 's')}"
+    air, made, key = preset.air, preset.liquid, f"air.stiff_from: {show(preset.air.stiff_from, 's')}"
     if made.air.sound_speed <= made.sound_speed:
         raise LabError(
             "air.stiff_from: the air is no stiffer then, since its speed of sound is not above the water's, "
@@ -81,7 +81,7 @@ def _check_sound(preset: Wet) -> None:
     """Raise LabError for air whose sound is so slow that its own weight or cohesion would compress it to nothing."""
     air, room = preset.air, preset.tank.extent[1] - (depth(preset) if preset.water.shape is None else 0.0)
     slow = float(np.sqrt((GAMMA - 1.0) * preset.run.gravity * room)) / SLOWEST
-    made = liquid(preset).softened
+    made = preset.liquid.softened
     sound, pulled = made.air.sound_speed, Cohesion.slowest(made.air.cohesion, air.density) / COHERENT
     if sound < pulled:
         raise LabError(

@@ -11,7 +11,6 @@ from lab.preset.sections.water import liquid
 from lab.preset.sections.water.flow_checks import check_flow, check_periodic
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.preset.sections.water.section import Gauge, Water
-from lab.preset.sections.water.tanks import pools
 from lab.preset.units import needed, show
 from solvers.fluid.viscosity import LAMINAR
 
@@ -167,8 +166,8 @@ def _check_spacing(preset: Whole) -> None:
 def _check_sound(preset: Whole) -> None:
     """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
     borne = preset.water.radius is None and "z" not in (preset.water.periodic or "")
-    head = borne * preset.run.gravity * max(pool.depth for pool in pools(preset))
-    sound = liquid.liquid(preset).sound_speed
+    head = borne * preset.run.gravity * max(pool.depth for pool in preset.pools)
+    sound = preset.liquid.sound_speed
     if head > COMPRESSED * sound**2:
         least = show((head / COMPRESSED) ** 0.5, "m/s")
         raise LabError(
@@ -179,7 +178,7 @@ def _check_sound(preset: Whole) -> None:
 
 def _check_background(preset: Whole) -> None:
     """Raise LabError for a background pressure at a free surface, or one that compresses the water visibly."""
-    pressure, sound = preset.water.background_pressure or 0.0, liquid.liquid(preset).sound_speed
+    pressure, sound = preset.water.background_pressure or 0.0, preset.liquid.sound_speed
     if pressure and not (preset.water.full or preset.air):
         raise LabError("water.background_pressure: goes with water.full or [air]; a free surface would be blown apart.")
     most = COMPRESSED * preset.water.density * sound**2

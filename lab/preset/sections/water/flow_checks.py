@@ -59,7 +59,7 @@ def _check_clear(preset: Whole) -> None:
             "water.flow: strain, rotation and pull are of water that is free on all sides; give water.radius or "
             "water.region, and leave out water.periodic."
         )
-    reach, tank = liquid.liquid(preset).reach, np.array(preset.tank.corners)
+    reach, tank = preset.liquid.reach, np.array(preset.tank.corners)
     near = min(depth_inside(corner, tank) for corner in preset.water.shape)
     if near < reach:
         raise LabError(

@@ -17,7 +17,7 @@ from lab.preset.sections.tank import Tank
 from lab.preset.sections.water.air import Air, sound_of_air
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import Gauge, Water
-from lab.preset.sections.water.tanks import Tanked, pools
+from lab.preset.sections.water.tanks import Pool, Tanked
 from solvers.fluid import given
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
@@ -39,6 +39,8 @@ class Wet(Tanked, Protocol):
     motion: MotionGroup
     parts: dict[str, PartGroup]
     run: Run
+    liquid: given.Water
+    pools: tuple[Pool, ...]
 
 
 def distance_of_walls(preset: Wet) -> float | None:
@@ -129,13 +131,13 @@ def _edge(gauge: Gauge, tank: Tank) -> int:
 
 def bounds(preset: Wet) -> tuple[np.ndarray, float]:
     """The polygon (m, 2) m, counter-clockwise, that the first tank's water fills up to a level (m), and this level."""
-    first = pools(preset)[0]
+    first = preset.pools[0]
     return first.polygon, first.level
 
 
 def depth(preset: Wet) -> float:
     """Depth (m) of the first tank's water, or height of its region."""
-    return pools(preset)[0].depth
+    return preset.pools[0].depth
 
 
 def layers(preset: Wet) -> int:
@@ -155,7 +157,7 @@ def expected_speed(preset: Wet) -> float:
 
     H is the height of the water's surface over the tank's lowest point, that of the deepest tank.
     """
-    height = max(pool.depth for pool in pools(preset))
+    height = max(pool.depth for pool in preset.pools)
     if preset.water.shape is not None:
         height = max(height, bounds(preset)[1] - min(z for _, z in preset.tank.corners))
     wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.shape is None else FRONT)

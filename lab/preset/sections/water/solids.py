@@ -26,7 +26,7 @@ def check_solids(preset: liquid.Wet) -> None:
         if part.history:
             _check_end(preset, part, key)
         if part.closed:
-            _check_body(part, 2.0 * liquid.liquid(preset).reach, key)
+            _check_body(part, 2.0 * preset.liquid.reach, key)
         elif len(part.points) != 2:
             remedy = "give two points, or set closed = true for a solid body"
             raise LabError(f"{key}.points: a plate in water is straight (got {len(part.points)} points); {remedy}.")

@@ -40,9 +40,11 @@ class Pool:
         return self.level - float(self.polygon[:, 1].min())
 
 
-def pools(preset: Tanked) -> list[Pool]:
+def pools(preset: Tanked) -> tuple[Pool, ...]:
     """The water of each tank that has some, in the axes of the first tank; the first tank's is first."""
     water, outline, found = preset.water, np.array(preset.tank.corners), []
+    if water is None:
+        return ()
     if water.shape is not None:
         found.append(Pool(0, water.shape, float(water.shape[:, 1].max())))
     elif water.depth is not None:
@@ -51,7 +53,7 @@ def pools(preset: Tanked) -> list[Pool]:
         if tank.depth is not None:
             outline = outline_of(preset, tank)
             found.append(Pool(number, outline, float(outline[:, 1].min()) + tank.depth))
-    return found
+    return tuple(found)
 
 
 def outline_of(preset: Tanked, tank: FurtherTank) -> np.ndarray:
