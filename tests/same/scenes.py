@@ -1,6 +1,14 @@
 """Short scenes that together run each schedule, precision, kind of grain and carrier: changes of `bed.toml` by name."""
 
 OFF = False  # in a preset: this table is left out
+WET = {  # no grains but water, which is rocked and breaks
+    "grains": OFF,
+    "material": OFF,
+    "water": {"depth": "20 mm", "spacing": "2 mm"},
+    "gauges.side": {"place": ["-30 mm", "15 mm"]},
+    "gauges.level": {"kind": "level", "y": "-25 mm"},
+    "run.repeats": 1,
+}
 
 SCENES = {
     "haff-werner": {},
@@ -53,4 +61,38 @@ SCENES = {
     "per-grain-f32": {"run.schedule": "per-grain", "run.precision": "f32"},
     "mixed": {"run.precision": "mixed", "contact.tangential": "mindlin"},
     "gear": {"run.integrator": "gear", "run.duration": "0.05 s"},
+    "water": WET,
+    "water-mixed": WET | {"run.precision": "mixed", "run.schedule": "per-band", "run.threads": 2},
+    "water-air": WET | {"air": {}},
+    "water-plate": WET
+    | {
+        "parts.baffle": {"points": [["10 mm", "0 mm"], ["10 mm", "15 mm"]]},
+        "gauges.force": {"kind": "force", "place": ["30 mm", "25 mm"]},
+    },
+    "water-sources": WET | {"water.scheme": "as_P"},
+    "ballast": {
+        "motion.roll": OFF,
+        "grains.count": 60,
+        "water.spacing": "3 mm",
+        "tanks.roof": {
+            "width": "60 mm",
+            "height": "18 mm",
+            "depth": "9 mm",
+            "place": ["0 mm", "58 mm"],
+        },
+        "ship": {
+            "breadth": "80 mm",
+            "height": "80 mm",
+            "draught": "34 mm",
+            "gravity_height": "20 mm",
+            "roll_period": "0.7 s",
+            "hold": ["0 mm", "5 mm"],
+            "freedom": "sway-heave-roll",
+            "heel": "8 deg",
+            "release": "0.1 s",
+            "radiation": "memory",
+        },
+        "run.repeats": 1,
+        "run.duration": "0.2 s",
+    },
 }
