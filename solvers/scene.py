@@ -1,13 +1,13 @@
 """The scene: everything the solver needs to know about an experiment, in SI units."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Annotated
 
 import numpy as np
 
-from solvers.fluid.given import Water
+from solvers.fluid.given import Fluid
 from solvers.fluid.timestep import limits_of_water
 from solvers.grains.bed.relaxing import AT_REST, BURSTING, lifting_overlap, relaxed
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
@@ -15,7 +15,7 @@ from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import SLOWEST, limits_of_grains
 from solvers.machine.limit import Limit
-from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, comparable, joined, marked
+from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, in_one_launch, shared
 from solvers.motion.axle import Axle
 from solvers.motion.carrier import answered_shares, limits_of_carrier
 from solvers.ship.vessel import Vessel
@@ -39,7 +39,7 @@ class Scene:
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
     - `step` Δt in s, None: derived; `base_share`: see `share_to_lengthen`. At the start: `start_speed` (m/s), highest
       closing speed of grains and walls; `velocity` (W, n, 2) m/s, `spin` (W, n) rad/s, None: at rest.
-    - `water`, its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`, and its steps: `water_pace` of Δt.
+    - `fluid`: the water and air in them.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
 
     The fields' marks say which may differ between the worlds of a launch, and from which a settled bed follows.
@@ -78,10 +78,7 @@ class Scene:
     thickness: float | None = None
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
-    water: Water | None = None
-    water_pace: Annotated[int, NotOfBed()] = 1  # more than 1 in ships alone
-    soft_stride: Annotated[int, NotOfBed()] = 1  # steps of the water in one, while its air is soft
-    drops: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.particles), NotOfBed()] = None
+    fluid: Fluid | None = None
     integrator: str = "verlet"
     precision: str = "f64"
     schedule: str = "auto"
@@ -121,7 +118,7 @@ class Scene:
     @property
     def fills(self) -> tuple[int, ...]:
         """How many particles of water are in each tank."""
-        return self.water.in_tanks(self.particles, len(self.tanks)) if self.water else (0,) * len(self.tanks)
+        return self.fluid.fills(len(self.tanks)) if self.fluid else (0,) * len(self.tanks)
 
     @property
     def apart(self) -> list[int]:
@@ -166,7 +163,7 @@ class Scene:
     @property
     def particles(self) -> int:
         """Number of particles of water in a world."""
-        return 0 if self.water is None else self.drops.shape[1]
+        return self.fluid.count if self.fluid else 0
 
     @property
     def span(self) -> float:
@@ -230,7 +227,7 @@ class Scene:
         """
         closing = max(self.credible_speed() if speed is None else speed, SLOWEST)
         bounds = limits_of_grains(self, closing) if self.radius.size else []
-        bounds = [*bounds, *(limits_of_water(self) if self.water else ())] or (
+        bounds = [*bounds, *(limits_of_water(self) if self.fluid else ())] or (
             limits_of_carrier(self.vessels, self.axles, self.gravity)
         )
         return sorted(bounds, key=lambda limit: limit.step)
@@ -277,19 +274,12 @@ class Scene:
         )
 
     def shared(self) -> tuple:
-        """Everything that must be equal for worlds of two scenes to run in one launch; the steps must be set.
-
-        It follows from the marks of the fields: all of each that has none, and what those of `EachWorld` agree in.
-        """
-        each, largest = marked(Scene, EachWorld), marked(Scene, LargestOfWorlds)
-        names = [field.name for field in fields(self) if field.init and field.name not in largest]
-        return tuple(each[name].alike(self) if name in each else comparable(getattr(self, name)) for name in names)
+        """Everything that must be equal for worlds of two scenes to run in one launch; the steps must be set."""
+        return shared(self)
 
     @classmethod
     def joined(cls, scenes: "Sequence[Scene]") -> "Scene":
         """One scene with the worlds of all `scenes`; raises ValueError unless their `shared()` are equal."""
         if any(scene.shared() != scenes[0].shared() for scene in scenes):
             raise ValueError("these scenes cannot run in one launch")
-        each = {name: joined([getattr(scene, name) for scene in scenes]) for name in marked(Scene, EachWorld)}
-        largest = {name: max(getattr(scene, name) for scene in scenes) for name in marked(Scene, LargestOfWorlds)}
-        return replace(scenes[0], **each, **largest)
+        return in_one_launch(list(scenes))

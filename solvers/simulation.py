@@ -63,10 +63,10 @@ class Simulation:
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
-        self.stretch = max(stretch, scene.soft_stride) if alone else 1
+        self.stretch = max(stretch, scene.fluid.soft_stride if scene.fluid else 1) if alone else 1
         self.vectors = wide.lanes_of_outlines(scene.precision) if scene.shapes else wide.lanes()
         self.steps, self.room, self.among, self.skin = 0, 1, worlds, skin  # `among`: worlds at the start
-        self.simple = scene.shapes is None and scene.water is None  # short kernels
+        self.simple = scene.shapes is None and scene.fluid is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
         means = [quantity for quantity in self.observer.quantities if quantity.mean]

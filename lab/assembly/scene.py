@@ -1,6 +1,7 @@
 """Build the solver's scene from a resolved preset: the tank, its carrier and the matters in it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import ceil
 
 import numpy as np
@@ -9,7 +10,7 @@ from lab.assembly.collisions import known_collisions
 from lab.assembly.grains import check_softness, grain_count, grains_of
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
-from lab.assembly.water import most_drops, particles, water_aboard, water_of
+from lab.assembly.water import fluid_of, most_drops, particles, water_aboard
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import further_tanks
@@ -40,10 +41,9 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     given, position = {"radius": np.zeros((worlds, 0))}, np.zeros((worlds, 0, 2))
     if preset.grains:
         given, position = grains_of(preset)
-    if preset.water:
-        given |= water_of(preset)
     scene = Scene(
         **given,
+        fluid=fluid_of(preset),
         outline=np.array(preset.tank.corners),
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * worlds,
@@ -80,7 +80,7 @@ def stretch(preset: Preset) -> int:
 
 def _base_share(scene: Scene, times: float) -> float:
     """What to take of the derived step so that it may be so many `times` as long; 1 where steps never are."""
-    if times <= 1.0 or scene.answers or scene.water or scene.integrator == "gear":
+    if times <= 1.0 or scene.answers or scene.fluid or scene.integrator == "gear":
         return 1.0
     return share_to_lengthen(scene.step_limits()[0].step, scene.step_limits(SLOWEST)[0].step, times)
 
@@ -92,7 +92,7 @@ def _soft_stride(preset: Preset, scene: Scene, wanted: float) -> int:
     """
     if choose_arch(preset.run.arch, preset.run.precision, True, scene.worlds * particles(scene)) != "cpu":
         return 1  # particles that move one by one have steps of one length
-    interval, early = 1.0 / preset.record.series_rate, scene.water.air.stiff_from
+    interval, early = 1.0 / preset.record.series_rate, scene.fluid.water.air.stiff_from
     longest = soft_limit(scene, LEVELS[preset.run.accuracy].longer_steps)
 
     def steps(stride: int) -> float:
@@ -109,13 +109,16 @@ def _step(preset: Preset, scene: Scene) -> float:
     if run.step == "auto":
         scene.base_share = _base_share(scene, longest)
         wanted = scene.base_share * usual
-        if scene.water and scene.water.air and scene.water.air.stiff_from > 0.0:
-            scene.soft_stride = longest = _soft_stride(preset, scene, wanted)
+        if scene.fluid and scene.fluid.water.air and scene.fluid.water.air.stiff_from > 0.0:
+            longest = _soft_stride(preset, scene, wanted)
+            scene.fluid = replace(scene.fluid, soft_stride=longest)
             wanted = min(wanted, soft_limit(scene, LEVELS[run.accuracy].longer_steps) / longest)
     elif limits:
         check_forced(wanted, limits, usual, run.force_step)
     # Between two rows of the series lies a whole number of the longest steps, of grains and of water.
     count = longest * max(1, ceil(interval / (longest * wanted) - 1e-9))
     of_water = ceil(count / longest_pace(scene, interval / count))
-    scene.water_pace = ceil(count / of_water)
-    return interval / (of_water * scene.water_pace)
+    pace = ceil(count / of_water)
+    if scene.fluid:
+        scene.fluid = replace(scene.fluid, pace=pace)
+    return interval / (of_water * pace)

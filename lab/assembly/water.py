@@ -9,7 +9,7 @@ from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
 from lab.preset.sections.water.tanks import Pool
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
+from solvers.fluid.given import Fluid, Water
 from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.flow import compressed, stirred, torsion, vortex_pressure, vortices
@@ -25,26 +25,26 @@ from solvers.tank.outline import moments
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 
-VELOCITY = [VELOCITY_Y, VELOCITY_Z]
 
-
-def water_of(preset: Preset) -> dict:
-    """What a scene says of the water, by its fields; it is the same in all repeats. Raises LabError.
+def fluid_of(preset: Preset) -> Fluid | None:
+    """The fluid of a scene, the same in all repeats; None without water. Raises LabError.
 
     Its density is that without pressure (`uncompressed`): the preset's is that of the water as it starts, in the mean.
     """
-    drops = {pool.number: drops_of(preset, pool) for pool in preset.pools}
-    fills = tuple(len(drops.get(number, ())) for number in range(1 + len(preset.tanks)))
-    water, all_drops = replace(preset.liquid, fills=fills if len(fills) > 1 else ()), np.concatenate([*drops.values()])
+    if preset.water is None:
+        return None
+    in_tank = {pool.number: drops_of(preset, pool) for pool in preset.pools}
+    fills = tuple(len(in_tank.get(number, ())) for number in range(1 + len(preset.tanks)))
+    water, start = preset.liquid, np.concatenate([*in_tank.values()])
     if water.model == "sph":  # else particles are not compressed
-        share = np.concatenate([np.full(len(of_tank), _along(preset, number)) for number, of_tank in drops.items()])
-        wet = _wet(all_drops[None])
-        water = replace(water, density=uncompressed(all_drops[:wet], water.density, share[:wet]))
-    return {"water": water, "drops": np.tile(all_drops, (preset.run.repeats, 1, 1))}
+        share = np.concatenate([np.full(len(start), _along(preset, number)) for number, start in in_tank.items()])
+        wet = ~start["gas"]
+        water = replace(water, density=uncompressed(start[wet], water.density, share[wet]))
+    return Fluid(water, np.tile(start, (preset.run.repeats, 1)), fills if len(fills) > 1 else ())
 
 
 def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
-    """The particles (n, 6) of the water in a tank, by default the first. Raises LabError if none fits in."""
+    """The particles (n,) of the water in a tank, by default the first. Raises LabError if none fits in."""
     pool = pool or preset.pools[0]
     water = preset.liquid
     parts = [part.wet for part in preset.parts.values()]
@@ -67,21 +67,21 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
 
 
 def _set_going(preset: Preset, drops: np.ndarray) -> None:
-    """Give particles (n, 6) the velocities and the pressure of the flow that they start with."""
-    flow, water, place = preset.water.flow, preset.liquid, drops[:, [Y, Z]]
+    """Give particles (n,) the velocities and the pressure of the flow that they start with."""
+    flow, water, place = preset.water.flow, preset.liquid, drops["position"]
     if flow.free:
-        drops[:, VELOCITY] = stirred(place - centre_of_flow(preset), flow.strain, flow.rotation)
+        drops["velocity"] = stirred(place - centre_of_flow(preset), flow.strain, flow.rotation)
         rate = flow.strain**2 - flow.rotation**2 + flow.pull**2
         pressure = rate * torsion(bounds(preset)[0], place)
     else:
         place, sides = place - np.array(preset.tank.corners).min(axis=0), np.array(preset.tank.extent)
-        drops[:, VELOCITY] = flow.vortices * vortices(place, sides)
+        drops["velocity"] = flow.vortices * vortices(place, sides)
         pressure = flow.vortices**2 * vortex_pressure(place, sides)
-    drops[:, EXCESS] = compressed(pressure, water)
+    drops["excess"] = compressed(pressure, water)
 
 
 def _air_of(preset: Preset, water: Water) -> np.ndarray:
-    """The particles (n, 7) of the air, which fills what the water leaves of the tank."""
+    """The particles (n,) of the air, which fills what the water leaves of the tank."""
     tank, (polygon, level) = np.array(preset.tank.corners), bounds(preset)
     if preset.water.shape is None:
         return air_above(tank, level, water, preset.run.gravity)
@@ -89,21 +89,21 @@ def _air_of(preset: Preset, water: Water) -> np.ndarray:
 
 
 def _let_go(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> None:
-    """Give each of the particles (n, 6) of a region the density of its depth, none where it stands on nothing."""
-    water, (polygon, level), place = preset.liquid, bounds(preset), drops[:, [Y, Z]]
+    """Give each of the particles (n,) of a region the density of its depth, none where it stands on nothing."""
+    water, (polygon, level), place = preset.liquid, bounds(preset), drops["position"]
     tank = Tank(np.array(preset.tank.corners), preset.thickness, preset.tank.open_edges)
     depth, weight = depths(place, polygon, level, tank, parts, water.spacing), Reduced.weight(water, preset.run.gravity)
-    drops[:, EXCESS] = hydrostatic_excess(depth, weight, water.sound_speed, water.state)
+    drops["excess"] = hydrostatic_excess(depth, weight, water.sound_speed, water.state)
 
 
 def _cut_off(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> np.ndarray:
-    """Those of the particles (n, 6) of a lattice that parts leave free."""
+    """Those of the particles (n,) of a lattice that parts leave free."""
     water, (polygon, level) = preset.liquid, bounds(preset)
-    whole = drops[:, VOLUME].sum()
-    drops = drops[clear_of(drops[:, [Y, Z]], parts, water.spacing)]
+    whole = drops["volume"].sum()
+    drops = drops[clear_of(drops["position"], parts, water.spacing)]
     if not len(drops):
         raise LabError("parts: they leave no room for the water.")
-    drops[:, VOLUME] *= whole * free_share(polygon, level, parts, water.spacing) / drops[:, VOLUME].sum()
+    drops["volume"] *= whole * free_share(polygon, level, parts, water.spacing) / drops["volume"].sum()
     return drops
 
 
@@ -138,19 +138,14 @@ def most_drops(preset: Preset) -> int:
     return count
 
 
-def volumes_of(drops: np.ndarray | None, worlds: int) -> np.ndarray:
+def volumes_of(scene: Scene) -> np.ndarray:
     """Volumes (W, n) m² of the particles of water of a scene in the plane; n is 0 without water."""
-    return np.zeros((worlds, 0)) if drops is None else drops[:, : _wet(drops), VOLUME]
+    return scene.fluid.particles["volume"][:, : scene.fluid.wet] if scene.fluid else np.zeros((scene.worlds, 0))
 
 
-def air_volumes_of(drops: np.ndarray | None, worlds: int) -> np.ndarray:
+def air_volumes_of(scene: Scene) -> np.ndarray:
     """As `volumes_of`, of the particles of air."""
-    return np.zeros((worlds, 0)) if drops is None else drops[:, _wet(drops) :, VOLUME]
-
-
-def _wet(drops: np.ndarray) -> int:
-    """How many of the particles (W, n, 6 or 7) of each world are water; they come first."""
-    return drops.shape[1] - (int(drops[0, :, GAS].sum()) if drops.shape[2] > GAS else 0)
+    return scene.fluid.particles["volume"][:, scene.fluid.wet :] if scene.fluid else np.zeros((scene.worlds, 0))
 
 
 def updates(scene: Scene, steps: int) -> int:

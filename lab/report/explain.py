@@ -158,9 +158,9 @@ def _step(simulation: Simulation) -> list[tuple[str, str]]:
     scene = simulation.scene
     limits = [f"{show(limit.step, 's')}: {limit.reason}" for limit in scene.step_limits()]
     limits = limits or ["the interval between samples: the tank's motion is exact at any time"]
-    pace = scene.water_pace
+    pace = scene.fluid.pace if scene.fluid else 1
     of_water = [("of the water", f"{show(pace * scene.step, 's')}, {pace} steps in one")] * (pace > 1)
-    if scene.water and scene.water.softened is not scene.water:
+    if scene.fluid and scene.fluid.water.softened is not scene.fluid.water:
         of_water = [("while the air is soft", water.soft_step(scene, simulation.stretch))]
     return [("step", show(scene.step, "s")), *of_water, *((f"limit {k + 1}", limit) for k, limit in enumerate(limits))]
 
@@ -168,7 +168,7 @@ def _step(simulation: Simulation) -> list[tuple[str, str]]:
 def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
     scene, carrier, walls = simulation.scene, simulation.carrier, simulation.walls
     terms = "gravity" if scene.gravity else "none"
-    if scene.water and scene.water.pull:
+    if scene.fluid and scene.fluid.water.pull:
         terms = "pull to a point"
     if carrier.moving:
         terms += ", translation"
@@ -219,7 +219,7 @@ def _each(size: int, count: int, what: str) -> str:
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     """Seconds that a run takes, by its parts, without settling; kernels are compiled anew and all pictures painted."""
-    rule = "water" if scene.water else scene.shapes.contact if scene.shapes else "discs"
+    rule = "water" if scene.fluid else scene.shapes.contact if scene.shapes else "discs"
     duration, record = preset.duration, preset.record
     found = {
         "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if preset.ship else 0.0),
@@ -233,14 +233,16 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
 def _steps(scene, duration: float) -> float:
     """How many steps a duration (s) takes, long ones of soft air counted as one."""
     steps = duration / scene.step
-    return steps if scene.soft_stride == 1 else steps_of_water(scene, round(steps))
+    return steps_of_water(scene, round(steps)) if scene.fluid and scene.fluid.soft_stride > 1 else steps
 
 
 def _stepping(duration: float, preset, scene) -> float:
     """Seconds of computation for the steps of grains or water over a duration (s)."""
     rounds = -(-scene.worlds // min(scene.worlds, preset.run.threads or available_cores()))
     speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
-    a_step = STEP + scene.radius.shape[1] / speed + scene.particles / scene.water_pace / DROP_STEPS_PER_CORE
+    a_step = STEP + scene.radius.shape[1] / speed
+    if scene.fluid:
+        a_step += scene.fluid.count / scene.fluid.pace / DROP_STEPS_PER_CORE
     return rounds * _steps(scene, duration) * a_step
 
 

@@ -6,7 +6,6 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from lab.assembly.scene import build
-from lab.assembly.water import volumes_of
 from lab.base.errors import LabError
 from lab.measures.gauges import pressure_gauges
 from lab.measures.water_residual import residual
@@ -32,18 +31,18 @@ Rows = list[tuple[str, str]]
 
 def described(preset: Preset, scene: Scene) -> Rows:
     """The water and its gauges, each row a name and a text."""
-    pressure, level, force = parted(preset.gauges)
+    (pressure, level, force), water = parted(preset.gauges), scene.fluid.water
     rows = [
-        ("water", f"{scene.particles} particles in each tank, {_size(preset, scene.water)}"),
-        ("sound", _sound(preset, scene.water)),
+        ("water", f"{scene.particles} particles in each tank, {_size(preset, water)}"),
+        ("sound", _sound(preset, water)),
         *compression(preset, scene),
     ]
-    if scene.water.air:
+    if water.air:
         rows.append(("air", _air(scene)))
     if preset.water.flow:
         rows.append(("flow", _flow(preset)))
-    if scene.water.periodic:
-        rows.append(("periodic", f"space repeats itself along {' and '.join(scene.water.periodic)}"))
+    if water.periodic:
+        rows.append(("periodic", f"space repeats itself along {' and '.join(water.periodic)}"))
     if preset.gauges:
         kinds = zip(("pressure", "level", "force"), (pressure, level, force), strict=True)
         names = [f"{name} of {kind}" for kind, gauges in kinds for name in gauges]
@@ -56,9 +55,9 @@ def compression(preset: Preset, scene: Scene) -> Rows:
 
     The mass of all tanks is exact; that of each is told where some are deeper.
     """
-    count = volumes_of(scene.drops, scene.worlds).shape[1]
-    dense = scene.water.density * (1.0 + scene.drops[0, :count, given.EXCESS])
-    if scene.water.model != "sph" or np.ptp(dense) < EVEN * scene.water.density:
+    fluid = scene.fluid
+    dense = fluid.water.density * (1.0 + fluid.particles["excess"][0, : fluid.wet])
+    if not fluid.moved or np.ptp(dense) < EVEN * fluid.water.density:
         return []
     low, high, mean = (show(float(one), "kg/m^3") for one in (dense.min(), dense.max(), preset.water.density))
     text = f"{low} to {high} as it starts, by its own pressure; {mean} in the mean: level and mass are exact"
@@ -87,7 +86,7 @@ def _flow(preset: Preset) -> str:
 
 def models(scene: Scene) -> Rows:
     """What is compiled in for the water, each row a name and a text."""
-    water = scene.water
+    water = scene.fluid.water
     strength = "" if water.viscosity in LAMINAR else f", α {water.alpha:g}"
     return [
         ("kernel", f"{water.kernel}, h = {water.smoothing:g} spacings"),
@@ -136,8 +135,8 @@ def in_tank(recording: Recording) -> Iterator[str]:
         yield f"over it {recording.air_volume.shape[1]} particles of air, as far apart"
     scene = _scene(preset)
     yield f"{_steps(recording, scene)} steps of {show(recording.step, 's')}"
-    if scene and scene.soft_stride > 1:
-        yield f"longer steps while the air is soft: {soft_step(scene, scene.soft_stride)}"
+    if scene and scene.fluid.soft_stride > 1:
+        yield f"longer steps while the air is soft: {soft_step(scene, scene.fluid.soft_stride)}"
     limits = scene.step_limits() if scene else []
     yield from (f"limit of the step, {show(limit.step, 's')}: {limit.reason}" for limit in limits)
     if preset.water.scheme != "lab":
@@ -202,8 +201,8 @@ def _sound(preset: Preset, water: given.Water) -> str:
 
 def _air(scene: Scene) -> str:
     """The air of a scene in words, with how much softer than real air it is, and what it costs in steps."""
-    air, water = scene.water.air, scene.water
-    count = int(scene.drops[0, :, given.GAS].sum())
+    air, water = scene.fluid.water.air, scene.fluid.water
+    count = scene.fluid.count - scene.fluid.wet
     text = f"{count} of these particles, {show(air.density, 'kg/m^3')}, speed of sound {show(air.sound_speed, 'm/s')}"
     softer = (REAL_SOUND / air.sound_speed) ** 2
     if softer > SOFT:
@@ -228,7 +227,7 @@ def _steps(recording: Recording, scene: Scene | None) -> int:
     """How many steps the water has taken; long ones of soft air are one."""
     time = recording.series["time"]
     steps = round(float(time[-1]) / recording.step) if len(time) else 0
-    return steps_of_water(scene, steps) if scene and scene.soft_stride > 1 else steps
+    return steps_of_water(scene, steps) if scene and scene.fluid.soft_stride > 1 else steps
 
 
 def _scene(preset: Preset) -> Scene | None:

@@ -6,16 +6,11 @@ the user's cache, or in the folder that the environment variable CARGOLAB_CACHE 
 least recently used beds are deleted first. A file that cannot be read counts as missing.
 """
 
-import hashlib
 import os
-import platform
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
-from functools import cache
-from importlib.metadata import version
-from importlib.resources import files
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 
@@ -28,15 +23,13 @@ from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.schema import Preset
 from lab.preset.units import show
+from lab.runs.bed_key import bed_key
 from solvers.grains.bed.filling import clear_of_walls, levelled
 from solvers.grains.materials import Material
-from solvers.grains.shapes.given import Shapes
-from solvers.machine.marks import EachWorld, NotOfBed, marked
 from solvers.machine.state import Axes, of_world
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
-FORMAT = "cargo-shift-lab bed 2"
 LARGEST_STORE = 2**28  # bytes
 ABANDONED = 3600.0  # s after which a half-written file is deleted
 
@@ -181,58 +174,6 @@ def _frictionless(materials) -> tuple[Material, ...]:
 
 def _corners(scene: Scene) -> tuple[tuple[float, float], ...]:
     return tuple(map(tuple, scene.outline.tolist()))
-
-
-def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settling) -> str:
-    """Hash of all that determines the bed of one world: scene, start (n, 2) m, settling, and the solver's code."""
-    scene = simulation.scene
-    parts = [FORMAT, _engine(), repr(how), position, simulation.dt]
-    parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin]
-    parts += [(type(motion).__name__, motion.coordinate) for motion in scene.motions[world]]
-    if scene.vessels:
-        parts.append(simulation.carrier.sizes)  # of its arrays, and with them of the bed's
-    each, unrelated = marked(Scene, EachWorld), marked(Scene, NotOfBed)
-    for field in fields(scene):
-        if field.init and field.name not in unrelated:  # the rest is derived from these
-            value = getattr(scene, field.name)
-            if isinstance(value, Shapes):
-                value = _shapes_of(value, world)
-            elif field.name in each and value is not None:
-                value = value[world]
-            parts.append((field.name, value))
-    digest = hashlib.blake2b(digest_size=16)
-    for part in parts:
-        _feed(digest, part)
-    return digest.hexdigest()
-
-
-def _shapes_of(shapes: Shapes, world: int) -> tuple:
-    """All data on the shapes in one world, independent of the other worlds."""
-    used, which = np.unique(shapes.which[world], return_inverse=True)
-    outlines = tuple(shapes.outlines[k] for k in used)
-    return outlines, which, shapes.angle[world], shapes.contact, shapes.nodes
-
-
-def _feed(digest, value: object) -> None:
-    """Add a value to a hash, arrays with all their digits."""
-    if isinstance(value, np.ndarray):
-        digest.update(f"{value.dtype}{value.shape}".encode())
-        digest.update(np.ascontiguousarray(value).tobytes())
-    elif isinstance(value, tuple):
-        for item in value:
-            _feed(digest, item)
-    else:
-        digest.update(repr(value).encode())
-    digest.update(b"\0")
-
-
-@cache
-def _engine() -> str:
-    """Identifies the engine: the solver's source text, its compiler, and the processor that it compiles for."""
-    digest = hashlib.blake2b(digest_size=16)
-    for path in sorted(Path(str(files("solvers"))).rglob("*.py")):
-        digest.update(path.read_bytes())
-    return f"{digest.hexdigest()} taichi {version('taichi')} numpy {version('numpy')} {platform.machine()}"
 
 
 def made(

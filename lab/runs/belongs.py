@@ -32,12 +32,11 @@ def check_asked(folder: Path, asked: Preset, by: str) -> None:
 
 def check_belongs(run: Run) -> None:
     """Raise Unusable if the recording in a run's folder was made from another preset or another scene."""
-    drops, worlds = run.scene.drops, run.scene.worlds
     with open_recording(run.folder) as recording:
         pairs = (
             (recording.radius, run.scene.radius),
-            (recording.volume, volumes_of(drops, worlds)),
-            (recording.air_volume, air_volumes_of(drops, worlds)),
+            (recording.volume, volumes_of(run.scene)),
+            (recording.air_volume, air_volumes_of(run.scene)),
             (recording.outline, run.scene.outline),
         )
         equal = all(a.shape == b.shape and np.allclose(a, b, rtol=TOLERANCE, atol=0.0) for a, b in pairs)

@@ -45,7 +45,7 @@ def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
 def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, position: np.ndarray) -> None:
     """Write the recording of the dry run."""
     count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.line for name, part in preset.parts.items()}
-    volume, air = (of(scene.drops, 1)[:, :GRAINS] for of in (volumes_of, air_volumes_of))
+    volume, air = (of(scene)[:, :GRAINS] for of in (volumes_of, air_volumes_of))
     new_recording(
         folder,
         preset=loaded.name,
@@ -70,7 +70,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
     if preset.grains:
         frame["position"] = position[:, :count]
     if preset.water:
-        frame["water_place"] = scene.drops[:, : volume.shape[1], :2]
+        frame["water_place"] = scene.fluid.particles["position"][:, : volume.shape[1]]
     times = np.arange(max(1, round(preset.duration * rate)) + 1) / rate
     with Recorder(folder) as recorder:
         for k, (time, pose) in enumerate(zip(times, _poses(preset, scene, position, times), strict=True)):

@@ -54,7 +54,7 @@ class Scenery:
         lines = {name: np.array(part.line) for name, part in preset.parts.items()}
         bounds = scene.outline, tuple(scene.open_edges), scene.fixed
         shapes = outlines_of(preset, scene)
-        pool = Pool.of(preset, *(of(scene.drops, scene.worlds) for of in (volumes_of, air_volumes_of)))
+        pool = Pool.of(preset, *(of(scene) for of in (volumes_of, air_volumes_of)))
         return cls(preset, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt, pool)
 
     def for_filling(self, top: float) -> "Scenery":

@@ -52,9 +52,9 @@ class Pool:
     def of(cls, scene, walls: Walls, order: Order) -> "Pool":
         """The tanks of a scene (`solvers.scene.Scene`)."""
         wet = [number for number, fill in enumerate(scene.fills) if fill]
-        shut = scene.water.walls and not any(scene.tanks[number].open_edges for number in wet)
+        shut = scene.fluid.water.walls and not any(scene.tanks[number].open_edges for number in wet)
         sides = scene.tanks[wet[0]].outline[:, 0]
-        return cls(walls, order, shut and not scene.water.periodic, wet[0], sides)
+        return cls(walls, order, shut and not scene.fluid.water.periodic, wet[0], sides)
 
 
 @ti.data_oriented

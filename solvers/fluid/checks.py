@@ -87,7 +87,7 @@ def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarr
 
 def refuse_reduced(scene) -> None:
     """Raise Unavailable, one sentence, for a `solvers.scene.Scene` in which pressures cannot be reduced."""
-    water, air = scene.water, scene.water.air
+    water, air = scene.fluid.water, scene.fluid.water.air
     if air is None or air.reduced is None:
         return
     beside = {

@@ -3,12 +3,20 @@
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from solvers.machine.marks import Doc, Interval, Unit
+import numpy as np
 
-# Columns of `Scene.drops` (W, n, 6): place (m) and velocity over the earth (m/s) in the tank's axes, relative excess of
-# density s = ρ/ρ0 − 1, and volume (m²) in the plane. A motion that starts abruptly finds the water at rest. With air
-# there is a seventh column: 0 for particles of water, 1 for those of air, which come last.
-Y, Z, VELOCITY_Y, VELOCITY_Z, EXCESS, VOLUME, GAS = range(7)
+from solvers.machine.marks import Doc, EachWorld, Interval, NotOfBed, Unit
+
+# A particle as it starts: position (m) and velocity over the earth (m/s) in the tank's axes, excess s = ρ/ρ0 − 1 of
+# density, volume (m²) in the plane, and whether it is air. A motion that starts abruptly finds the water at rest.
+PARTICLE = np.dtype(
+    [("position", float, 2), ("velocity", float, 2), ("excess", float), ("volume", float), ("gas", bool)]
+)
+
+
+def particles(*shape: int) -> np.ndarray:
+    """An array of particles of water at the origin, at rest, without pressure or volume."""
+    return np.zeros(shape, PARTICLE)
 
 
 @dataclass(frozen=True)
@@ -78,8 +86,7 @@ class Water:
     space. `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z",
     along which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name
     of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing.
-    `fills`: how many particles are in each tank of a world, by their numbers one after the other; (): all are in the
-    first. Water of different tanks never meets, though they may overlap in the plane. `model`: "sph", or "linear" or
+    `model`: "sph", or "linear" or
     "frozen", for which see `solvers.liquid`: then waves have the share `swing_damping` of the critical damping.
     `added_mass`: "layer" or "none", whether a ship has the answer of the walls' dummies on her own side.
     """
@@ -108,7 +115,6 @@ class Water:
     levels: tuple[Level, ...] = ()
     edges: tuple[int, ...] = ()
     start: str = "packed"
-    fills: tuple[int, ...] = ()
     model: str = "sph"
     swing_damping: float = 0.0
     added_mass: str = "none"
@@ -127,11 +133,47 @@ class Water:
         """Smoothing length h (m)."""
         return self.smoothing * self.spacing
 
-    def in_tanks(self, count: int, tanks: int) -> tuple[int, ...]:
-        """How many of `count` particles are in each of so many tanks."""
-        return self.fills or (count, *[0] * (tanks - 1))
-
     @property
     def reach(self) -> float:
         """Radius (m) of the kernels' support, 2h."""
         return 2.0 * self.length
+
+
+@dataclass(frozen=True, eq=False)
+class Fluid:
+    """The fluid of a scene: its `water`, the `particles` (W, n) of `PARTICLE` as they start, and its steps.
+
+    Those of air come last. `in_tanks`: how many particles are in each tank of a world, by their numbers one after the
+    other; (): all are in the first. Fluid of different tanks never meets, though they may overlap in the plane. A step
+    of the fluid is `pace` steps of the scene, more than 1 in ships alone, and while its air is soft `soft_stride`.
+    """
+
+    water: Water
+    particles: Annotated[np.ndarray, EachWorld(lambda fluid: fluid.count), NotOfBed()]
+    in_tanks: tuple[int, ...] = ()
+    pace: Annotated[int, NotOfBed()] = 1
+    soft_stride: Annotated[int, NotOfBed()] = 1
+
+    @property
+    def count(self) -> int:
+        """Number of particles in a world."""
+        return self.particles.shape[1]
+
+    @property
+    def wet(self) -> int:
+        """How many of them are water; they come first."""
+        return self.count - int(self.particles["gas"][0].sum())
+
+    @property
+    def moved(self) -> int:
+        """How many of them are moved one by one: none of a liquid that is frozen, or linear."""
+        return self.count if self.water.model == "sph" else 0
+
+    @property
+    def softened(self) -> "Fluid":
+        """As it is at the start, until its air is stiff."""
+        return replace(self, water=self.water.softened)
+
+    def fills(self, tanks: int) -> tuple[int, ...]:
+        """How many particles are in each of so many tanks."""
+        return self.in_tanks or (self.count, *[0] * (tanks - 1))

@@ -100,7 +100,7 @@ class Grid:
 
 
 def grid_round(
-    water: Water, drops: np.ndarray, tanks: Sequence[Tank], bounds: tuple[np.ndarray, np.ndarray], lanes: int
+    water: Water, position: np.ndarray, tanks: Sequence[Tank], bounds: tuple[np.ndarray, np.ndarray], lanes: int
 ) -> Grid:
     """The grid round `tanks`, in which water stays within `bounds`.
 
@@ -109,7 +109,7 @@ def grid_round(
     lower, upper = bounds
     margin = ROOM * water.reach
     if not water.walls and not water.periodic:
-        place = drops[..., :2].reshape(-1, 2)
+        place = position.reshape(-1, 2)
         lower, upper = place.min(axis=0), place.max(axis=0)
         margin = float(np.ptp(place, axis=0).max())
     outline = tanks[0].outline

@@ -10,7 +10,7 @@ from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scen
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
-from solvers.fluid.given import GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
+from solvers.fluid.given import Fluid
 from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
@@ -45,33 +45,33 @@ class WaterMatter(Matter):
     of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force", "part_force")  # known only after a step
 
     def __init__(self, scene, setting: Setting):
-        water: Water = scene.water.softened
-        self.scene, self.water, self.drops = scene, water, scene.drops
-        arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], scene.drops.shape[1]
+        fluid: Fluid = scene.fluid.softened
+        self.scene, self.fluid, self.water = scene, fluid, (water := fluid.water)
+        arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], fluid.count
         alone = not scene.radius.shape[1]  # kernels that hold grains' as well cannot be on real vectors: Taichi aborts
         lanes = LANES if alone and not setting.per_particle else 1
         self.wide = lanes > 1
         behind = Behind(water, scene.tanks, scene.fills)
-        grid = grid_round(water, scene.drops, scene.tanks, setting.walls.bounds, lanes)
+        grid = grid_round(water, fluid.particles["position"], scene.tanks, setting.walls.bounds, lanes)
         dummy, blocks, first = grid.arranged(behind.points, behind.tanks)
         self.bodies = Bodies(arrays, scene.parts, water, tank, worlds, lanes)
         self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
-        self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
+        self.gas = fluid.particles["gas"].astype(float)
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
         sizes = worlds, count, lanes, walls, grid.strips
         self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among, water.apart > 0.0)
         self.units = units = setting.units(p.wet)
-        self.load = setting.load(arrays.under("water"), units, scene.water_pace)
+        self.load = setting.load(arrays.under("water"), units, fluid.pace)
         self.load.lag(answer_at_rest(scene, behind), water.added_mass == "layer")
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
-        self.poses = Poses(arrays, setting.carrier, worlds, scene.water_pace > 1)
+        self.poses = Poses(arrays, setting.carrier, worlds, fluid.pace > 1)
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks))
         self.bodies.join(arrays, p, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
-        self.long = pace = Pace(arrays.under("water"), self.lists, scene.water_pace)
+        self.long = pace = Pace(arrays.under("water"), self.lists, fluid.pace)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         lean = Lean(arrays, medium, behind, dummy, tank)
         self.extrapolation = Extrapolation(arrays, medium, lean)
@@ -86,7 +86,7 @@ class WaterMatter(Matter):
         self.edges = Edges(arrays, medium, self.extrapolation, behind, dummy, scene.tanks, pool.first, water)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
-        mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
+        mass = water.density * fluid.particles["volume"].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = pace.first(self._before()), pace.last([Phase(self.note_passage)])
         closing = [Closing(arrays, medium, behind, dummy).close] if self.continuity.closes else []
@@ -201,7 +201,7 @@ class WaterMatter(Matter):
         """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
         p = self.particles
         self.stiffening.take(False, self.scene.gravity)
-        p.put(self.drops, self.drops[..., [VELOCITY_Y, VELOCITY_Z]], self.water)
+        p.put(self.fluid.particles, self.water)
         p.put_walls(*self.dummies, self.bodies.solids)
         for field in (*self.forces.sums, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
@@ -293,7 +293,7 @@ class WaterMatter(Matter):
 
 def make_water(scene, setting: Setting) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
-    if scene.water is None or scene.water.model != "sph":
+    if scene.fluid is None or not scene.fluid.moved:
         return None
     refuse_scene(scene.fills, len(scene.parts), bool(scene.radius.size))
     refuse_reduced(scene)

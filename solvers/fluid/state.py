@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water
+from solvers.fluid.given import Air, Water
 from solvers.fluid.walls.between import MODES
 from solvers.machine.state import Axis, State, roomy
 from solvers.machine.units import Units
@@ -121,15 +121,15 @@ class Particles:
         """All arrays that a step changes."""
         return [*self.moved, *self.acceleration, self.used]
 
-    def put(self, drops: np.ndarray, velocity: np.ndarray, water: Water) -> None:
-        """Fill the blocks in the order of the numbers with `drops` (W, n, 6) that have a `velocity` over the earth."""
+    def put(self, start: np.ndarray, water: Water) -> None:
+        """Fill the blocks in the order of the numbers with particles (W, n) as they `start` (`given.PARTICLE`)."""
         density = water.density
         if self.two:
-            density = np.where(drops[..., GAS] > 0.5, water.air.density, water.density)
-        mass = density * (1.0 + drops[..., EXCESS]) * drops[..., VOLUME]
-        columns = [drops[..., 0], drops[..., 1], velocity[..., 0], velocity[..., 1], drops[..., EXCESS], mass]
-        columns += [np.broadcast_to(np.arange(self.count), mass.shape), *([drops[..., GAS]] if self.two else [])]
-        columns += [drops[..., VOLUME]]
+            density = np.where(start["gas"], water.air.density, water.density)
+        mass = density * (1.0 + start["excess"]) * start["volume"]
+        along = [start[name][..., axis] for name in ("position", "velocity") for axis in range(start[name].shape[-1])]
+        columns = [*along, start["excess"], mass, np.broadcast_to(np.arange(self.count), mass.shape)]
+        columns += [*([start["gas"]] if self.two else []), start["volume"]]
         fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, *([0.0] if self.two else []), 0.0]
         for field, values, fill in zip([*self.given, self.volume], columns, fills, strict=True):
             whole = self.by_world(field.to_numpy())

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from math import inf, pi, sqrt
 
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
+from solvers.fluid.given import Water
 from solvers.fluid.viscosity import LAMINAR
 from solvers.fluid.walls.between import Between
 from solvers.machine.limit import Limit
@@ -21,7 +21,7 @@ SLOW = 1e-9
 
 def limits_of_water(scene) -> list[Limit]:
     """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected."""
-    water = scene.water
+    water = scene.fluid.water
     length, sound, speed = water.length, water.sound_speed, water_speed(scene)
     bounds = [
         Limit(
@@ -36,7 +36,7 @@ def limits_of_water(scene) -> list[Limit]:
         bounds.append(
             Limit(longest, f"{OF_AIR:g} of that of sound in the air, {water.air.sound_speed:.3g} m/s", firm=True)
         )
-    pushed = max(scene.gravity, scene.water.pull.rate**2 * scene.span if scene.water.pull else 0.0)
+    pushed = max(scene.gravity, water.pull.rate**2 * scene.span if water.pull else 0.0)
     pushed += sum(_shaken(motion, scene.span) for motion in scene.motions[0])
     if pushed > SLOW:
         bounds.append(Limit(FORCED * sqrt(length / pushed), f"{FORCED:g} √(h/a) at {pushed:.3g} m/s²", firm=True))
@@ -62,27 +62,31 @@ def longest_pace(scene, step: float) -> int:
 
     Not where a ship takes its water's answer on her own side, or takes long steps herself.
     """
-    if not (scene.water and scene.radius.size and scene.vessels):
+    if not (scene.fluid and scene.radius.size and scene.vessels):
         return 1
-    if scene.water.added_mass == "layer" or scene.vessels[0].handover:
+    if scene.fluid.water.added_mass == "layer" or scene.vessels[0].handover:
         return 1
     return max(1, int(min(limit.step for limit in limits_of_water(scene)) / step))
 
 
 def soft_limit(scene, longer: float) -> float:
     """The step (s) `longer` times the derived one, within its firm bounds, while the air of a scene is soft."""
-    return replace(scene, water=scene.water.softened).longest_step(longer)
+    return replace(scene, fluid=scene.fluid.softened).longest_step(longer)
 
 
 def stiff_step(scene) -> int:
     """The base step at which the air of a scene becomes stiff: a whole number of the long ones before."""
-    return scene.soft_stride * max(1, round(scene.water.air.stiff_from / scene.time_step()) // scene.soft_stride)
+    fluid = scene.fluid
+    return fluid.soft_stride * max(1, round(fluid.water.air.stiff_from / scene.time_step()) // fluid.soft_stride)
 
 
 def steps_of_water(scene, steps: int) -> int:
     """How many steps the water takes in so many base steps of a scene."""
-    soft = min(steps, stiff_step(scene)) if scene.soft_stride > 1 else 0
-    return soft // scene.soft_stride + (steps - soft) // scene.water_pace
+    fluid = scene.fluid
+    if fluid is None:
+        return steps
+    soft = min(steps, stiff_step(scene)) if fluid.soft_stride > 1 else 0
+    return soft // fluid.soft_stride + (steps - soft) // fluid.pace
 
 
 def of_air(water: Water) -> Water:
@@ -103,9 +107,8 @@ def kinematic(water) -> float:
 
 def water_speed(scene) -> float:
     """Highest speed (m/s) of the water to be expected: a fall through the tank, its own start, or the tank's motion."""
-    start = scene.drops[..., [VELOCITY_Y, VELOCITY_Z]]
-    fastest = float(sqrt((start**2).sum(axis=-1).max(initial=0.0)))
-    return max(fastest, scene.credible_speed() if scene.water.walls else 0.0)
+    fastest = float(sqrt((scene.fluid.particles["velocity"] ** 2).sum(axis=-1).max(initial=0.0)))
+    return max(fastest, scene.credible_speed() if scene.fluid.water.walls else 0.0)
 
 
 def _shaken(motion, lever: float) -> float:

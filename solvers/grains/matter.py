@@ -178,7 +178,7 @@ class GrainMatter(Matter):
         # Those that are checked: particle by particle they are looked at before a step, which has yet to spread them
         velocity = np.stack([field.to_numpy()[world, : self.grains.mobile] for field in self.grains.velocity], axis=-1)
         fastest = np.linalg.norm(velocity, axis=1).max()
-        if self.scene.water is None or not fastest * dt < self.way_a_step.to_numpy()[0]:
+        if self.scene.fluid is None or not fastest * dt < self.way_a_step.to_numpy()[0]:
             refuse_speed(world, velocity, time, dt)
 
     def restlessness(self, rows: dict[str, np.ndarray]) -> np.ndarray:
@@ -292,4 +292,4 @@ def bears_vectors(scene, units: Units) -> bool:
     Of outlines only convex ones have blocks of several contacts. The rule `area` is not written for vectors.
     """
     outlined = scene.shapes is None or (scene.shapes.convex and scene.shapes.contact != "area")
-    return outlined and not units.single and scene.water is None
+    return outlined and not units.single and scene.fluid is None

@@ -6,7 +6,6 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid import quantities
-from solvers.fluid.given import VOLUME, Y, Z
 from solvers.liquid.modes import Modes, modes_of
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axis
@@ -38,7 +37,7 @@ class LiquidMatter(Matter):
     of_contacts: ClassVar = ()
 
     def __init__(self, scene, setting: Setting):
-        self.scene, self.water = scene, scene.water
+        self.scene, self.water = scene, scene.fluid.water
         arrays, worlds = setting.arrays, setting.worlds
         self.carrier, self.exact = setting.carrier, arrays.exact
         self.units = Units(worlds, 1, 1, 1)
@@ -130,9 +129,9 @@ class LiquidMatter(Matter):
 
     def as_rigid(self) -> list[Body]:
         """The water of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
-        drops = self.scene.drops
-        mass = self.water.density * per_slab(self.scene) * drops[..., VOLUME]
-        return [frozen(d[:, Y], d[:, Z], m, d[:, VOLUME]) for d, m in zip(drops, mass, strict=True)]
+        particles = self.scene.fluid.particles
+        mass = self.water.density * per_slab(self.scene) * particles["volume"]
+        return [frozen(*p["position"].T, m, p["volume"]) for p, m in zip(particles, mass, strict=True)]
 
     def observe(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of water at `time` (s): its centre; others that particles have are zero."""
@@ -159,22 +158,23 @@ class LiquidMatter(Matter):
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Places and velocities (W, n, 2) of marks in the liquid, by its potential, and no pressures."""
-        way, fast, drops = self.way.to_numpy().astype(float), self.speed_of.to_numpy().astype(float), self.scene.drops
-        place, velocity = drops[..., [Y, Z]].copy(), np.zeros((*drops.shape[:2], 2))
+        way, fast = self.way.to_numpy().astype(float), self.speed_of.to_numpy().astype(float)
+        start = self.scene.fluid.particles
+        place, velocity = start["position"].copy(), np.zeros((*start.shape, 2))
         ends = np.cumsum([0, *self.scene.fills])
         for k, one in enumerate(self.modes):
             own = slice(ends[one.tank], ends[one.tank + 1])
-            for w in range(len(drops)):
-                moved = one.moved(drops[w, own][:, [Y, Z]])
+            for w in range(len(start)):
+                moved = one.moved(start["position"][w, own])
                 place[w, own] += moved @ way[w, k, : len(one.mass)]
                 velocity[w, own] = moved @ fast[w, k, : len(one.mass)]
-        parts = {"part": np.zeros((len(drops), 0, 2)), "part_turn": np.zeros((len(drops), 0))}
-        still = np.zeros(drops.shape[:2])
+        parts = {"part": np.zeros((len(start), 0, 2)), "part_turn": np.zeros((len(start), 0))}
+        still = np.zeros(start.shape)
         return {"water_place": place, "water_velocity": velocity, "water_pressure": still, **parts}
 
 
 def make_liquid(scene, setting: Setting) -> LiquidMatter | None:
     """The water of a scene (`solvers.scene.Scene`) without particles; None where it has none of that kind."""
-    if scene.water is None or scene.water.model == "sph":
+    if scene.fluid is None or scene.fluid.moved:
         return None
     return LiquidMatter(scene, setting)

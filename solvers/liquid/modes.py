@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.fluid.given import VOLUME, Y, Z
 from solvers.machine.errors import Unavailable
 from solvers.ship.body import Body, frozen
 from solvers.ship.potential.springs import BoxLiquid
@@ -65,14 +64,16 @@ class Modes:
 
 def modes_of(scene) -> list[Modes]:
     """Those of each tank of a scene (`solvers.scene.Scene`) that has water. Raises Unavailable."""
-    ends, found = np.cumsum([0, *scene.fills]), []
+    ends, found, liquid = np.cumsum([0, *scene.fills]), [], scene.fluid.water
     for number, tank in enumerate(scene.tanks):
-        drops = scene.drops[0, ends[number] : ends[number + 1]]
-        if len(drops):
-            density = scene.water.density
-            water = frozen(drops[:, Y], drops[:, Z], density * drops[:, VOLUME], drops[:, VOLUME])
+        particles = scene.fluid.particles[0, ends[number] : ends[number + 1]]
+        if len(particles):
+            density = liquid.density
+            water = frozen(*particles["position"].T, density * particles["volume"], particles["volume"])
             found.append(
-                _swinging(scene, number, tank, water) if scene.water.model == "linear" else Modes(number, water, water)
+                _swinging(scene, number, tank, water)
+                if scene.fluid.water.model == "linear"
+                else Modes(number, water, water)
             )
     return found
 
@@ -87,10 +88,17 @@ def _swinging(scene, number: int, tank: Tank, water: Body) -> Modes:
     ):
         raise Unavailable('water.model: "linear" is for box-shaped tanks; take "sph" or "frozen".')
     width = float(high[0] - low[0])
-    depth = water.mass / scene.water.density / width
-    liquid = BoxLiquid(width, depth, scene.water.density, scene.gravity)
+    depth = water.mass / scene.fluid.water.density / width
+    liquid = BoxLiquid(width, depth, scene.fluid.water.density, scene.gravity)
     body = Body(water.mass, water.centre, liquid.turning)
     own = liquid.masses, float(low[1]) + liquid.heights, liquid.frequencies
     return Modes(
-        number, water, body, float(0.5 * (low[0] + high[0])), *own, scene.water.swing_damping, liquid, float(low[1])
+        number,
+        water,
+        body,
+        float(0.5 * (low[0] + high[0])),
+        *own,
+        scene.fluid.water.swing_damping,
+        liquid,
+        float(low[1]),
     )

@@ -81,15 +81,33 @@ def marked(kind: type, mark: type) -> dict[str, Any]:
     return {name: marks[0] for name, marks in found.items() if marks}
 
 
-def comparable(value: object) -> Hashable:
-    """A value with arrays in it, in a form that can be compared and hashed."""
+def shared(value: object) -> Hashable:
+    """A value in a form that can be compared and hashed, without what may differ between the worlds of a launch.
+
+    Of a dataclass that is all of each field without a mark, and what those of `EachWorld` agree in.
+    """
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     if isinstance(value, tuple | list):
-        return tuple(map(comparable, value))
-    if is_dataclass(value):
-        return tuple(comparable(getattr(value, field.name)) for field in fields(value))
-    return value
+        return tuple(map(shared, value))
+    if not is_dataclass(value):
+        return value
+    each, largest = marked(type(value), EachWorld), marked(type(value), LargestOfWorlds)
+    names = [field.name for field in fields(value) if field.init and field.name not in largest]
+    return tuple(each[name].alike(value) if name in each else shared(getattr(value, name)) for name in names)
+
+
+def in_one_launch(values: list) -> object:
+    """One dataclass with the worlds of all `values`, whose `shared` are equal."""
+    first = values[0]
+    each, largest = marked(type(first), EachWorld), marked(type(first), LargestOfWorlds)
+    found = {name: joined([getattr(value, name) for value in values]) for name in each}
+    found |= {name: max(getattr(value, name) for value in values) for name in largest}
+    for name in (field.name for field in fields(first) if field.init and field.name not in found):
+        part = getattr(first, name)
+        if is_dataclass(part) and marked(type(part), EachWorld):
+            found[name] = in_one_launch([getattr(value, name) for value in values])
+    return replace(first, **found)
 
 
 def joined(values: list) -> object:

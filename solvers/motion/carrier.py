@@ -24,7 +24,7 @@ def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | AsK |
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
         kind = AsK if scene.vessels[0].handover else Afloat
-        return kind(arrays, scene.vessels, scene.gravity, every, scene.water is not None)
+        return kind(arrays, scene.vessels, scene.gravity, every, scene.fluid is not None)
     if scene.axles:
         return OnAxle(arrays, scene.axles, scene.gravity, scene.tanks[0].thickness)
     return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)

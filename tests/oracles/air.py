@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
+from solvers.fluid.given import Air, Fluid, Water, particles
 from solvers.fluid.phases.dispersed import LIGHT
 from solvers.fluid.phases.interfaces import INTERFACES
 from solvers.fluid.start.air import air_above, with_air
@@ -24,21 +24,21 @@ def both(width: float, height: float, depth: float, rows: int, **changes) -> Sce
     outline = box(width, height)
     drops = with_air(at_rest(outline, depth, water, GRAVITY), air_above(outline, depth, water, GRAVITY))
     given = {"radius": np.zeros((1, 0)), "outline": outline, "gravity": GRAVITY}
-    return Scene(**{**given, "water": water, "drops": drops[None], **changes})
+    return Scene(**{**given, "fluid": Fluid(water, drops[None]), **changes})
 
 
 def filled(places: np.ndarray, gas: np.ndarray, volume: float, excess: np.ndarray | float = 0.0) -> np.ndarray:
-    """Drops (1, n, 7) at places (n, 2) m of equal volumes (m²), the water first; gas (n,) is 1 for air."""
+    """Drops (1, n) at places (n, 2) m of equal volumes (m²), the water first; gas (n,) is 1 for air."""
     order = np.argsort(gas, kind="stable")
-    drops = np.zeros((1, len(places), 7))
-    drops[0, :, [Y, Z]], drops[0, :, GAS], drops[0, :, VOLUME] = places[order].T, gas[order], volume
-    drops[0, :, EXCESS] = np.broadcast_to(excess, gas.shape)[order]
+    drops = particles(1, len(places))
+    drops["position"][0], drops["gas"][0], drops["volume"][0] = places[order], gas[order], volume
+    drops["excess"][0] = np.broadcast_to(excess, gas.shape)[order]
     return drops
 
 
 def again(run: Simulation, scene: Scene) -> Simulation:
     """As `tests.oracles.water.again`, with as many particles, of which others may be air."""
-    gas = scene.drops[..., GAS]
+    gas = scene.fluid.particles["gas"].astype(float)
     first = gas.shape[1] - int(gas[0].sum())
     run.water.gas, run.water.phases = gas, {"water": slice(0, first), "air": slice(first, None)}
     return placed_again(run, scene)
@@ -49,8 +49,8 @@ class PlainBoth(PlainWater):
 
     def __init__(self, scene: Scene):
         super().__init__(scene)
-        water, air = scene.water, scene.water.air
-        self.gas = scene.drops[0, :, GAS]
+        water, air = scene.fluid.water, scene.fluid.water.air
+        self.gas = scene.fluid.particles["gas"][0].astype(float)
         self.cohesion = air.cohesion * self.gas
         self.liquid = 1.0 - self.gas
 

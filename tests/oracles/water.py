@@ -3,7 +3,7 @@
 import numpy as np
 
 from lab.studies.verify.plain_water import PlainWater, kernel
-from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
+from solvers.fluid.given import Fluid, Water, particles
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
@@ -19,14 +19,14 @@ def box(width: float, height: float) -> np.ndarray:
 
 
 def lattice(width: float, depth: float, spacing: float, sound: float, left: float | None = None) -> np.ndarray:
-    """Drops (1, n, 6) of a column of water at rest under gravity, from `left` (m) on, by default in the middle."""
+    """Drops (1, n) of a column of water at rest under gravity, from `left` (m) on, by default in the middle."""
     y = (np.arange(round(width / spacing)) + 0.5) * spacing + (-0.5 * width if left is None else left)
     z = (np.arange(round(depth / spacing)) + 0.5) * spacing
     grid = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
-    drops = np.zeros((1, len(grid), 6))
-    drops[0, :, [Y, Z]] = grid.T
-    drops[0, :, EXCESS] = GRAVITY * (depth - grid[:, 1]) / sound**2
-    drops[0, :, VOLUME] = spacing**2
+    drops = particles(1, len(grid))
+    drops["position"][0] = grid
+    drops["excess"][0] = GRAVITY * (depth - grid[:, 1]) / sound**2
+    drops["volume"][0] = spacing**2
     return drops
 
 
@@ -38,7 +38,7 @@ def still(width: float, height: float, depth: float, rows: int, **changes) -> Sc
     drops = lattice(width, depth, spacing, sound) if drops is None else drops
     water = Water(**{"spacing": spacing, "sound_speed": sound} | of_water)
     given = {"radius": np.zeros((len(drops), 0)), "outline": box(width, height), "gravity": GRAVITY}
-    return Scene(**{**given, "water": water, "drops": drops, **changes})
+    return Scene(**{**given, "fluid": Fluid(water, drops), **changes})
 
 
 def again(run: Simulation, scene: Scene) -> Simulation:
@@ -50,10 +50,10 @@ def again(run: Simulation, scene: Scene) -> Simulation:
         assert run.dt < 1.01 * scene.time_step()
     else:
         run.dt, run.longest_step = scene.time_step(), scene.longest_step(1.0)
-    if scene.water != run.scene.water:
+    if scene.fluid.water != run.scene.fluid.water:
         stiffening = run.water.stiffening
-        stiffening.soft = stiffening.stiff = stiffening.now = scene.water
-    run.scene, run.water.drops = scene, scene.drops
+        stiffening.soft = stiffening.stiff = stiffening.now = scene.fluid.water
+    run.scene, run.water.fluid = scene, scene.fluid
     run.alter(gravity=scene.gravity)
     run.start_clock()
     run.place(np.zeros((1, 0, 2)))

@@ -30,13 +30,13 @@ class PlainWater:
     liquid: np.ndarray | float = 1.0  # 1 for water, 0 for air
 
     def __init__(self, scene: Scene):
-        self.water, self.gravity = scene.water, np.array([0.0, -scene.gravity])
-        rows = int(np.ceil(scene.water.reach / scene.water.spacing))
-        self.wall, self.wall_volume, _ = layers(scene.outline, scene.water.spacing, rows)
+        self.water, self.gravity = scene.fluid.water, np.array([0.0, -scene.gravity])
+        rows = int(np.ceil(scene.fluid.water.reach / scene.fluid.water.spacing))
+        self.wall, self.wall_volume, _ = layers(scene.outline, scene.fluid.water.spacing, rows)
         off = self.wall - np.clip(self.wall, scene.outline.min(axis=0), scene.outline.max(axis=0))  # of a box
         self.along = np.stack([-off[:, 1], off[:, 0]], axis=1) / np.linalg.norm(off, axis=1)[:, None]
         away = np.linalg.norm(self.wall[:, None] - scene.outline, axis=2).min(axis=1)
-        self.straight = self.along * (away > 1.5 * scene.water.reach)[:, None]
+        self.straight = self.along * (away > 1.5 * scene.fluid.water.reach)[:, None]
         self.felt, self.speed = np.tile(self.gravity, (len(self.wall), 1)), np.zeros_like(self.wall)
 
     def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
@@ -161,7 +161,7 @@ class EarthWater(PlainWater):
     def __init__(self, scene: Scene, pose: Callable[[float], Pose]):
         super().__init__(scene)
         self.pose, self.inside = pose, (self.wall, self.along, self.straight)
-        self.plane = plane(WendlandC2) * scene.water.length
+        self.plane = plane(WendlandC2) * scene.fluid.water.length
 
     def stand(self, time: float) -> None:
         """Put the walls where they are at a time (s)."""

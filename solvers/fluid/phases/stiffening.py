@@ -33,7 +33,7 @@ class Stiffening:
 
     def __init__(self, arrays: State, particles: Particles, constants: Constants, scene, stretch: int):
         self.particles, self.constants = particles, constants
-        self.soft, self.stiff = scene.water.softened, scene.water
+        self.soft, self.stiff = scene.fluid.water.softened, scene.fluid.water
         self.acts, self.now = self.soft is not self.stiff, self.soft
         self.due, self.stretch = stiff_step(scene) if self.acts else NEVER, stretch
         self.paced = self.acts and stretch > 1

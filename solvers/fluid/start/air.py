@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Water, Y, Z
+from solvers.fluid.given import Water, particles
 from solvers.fluid.phases.adiabatic import GAMMA
 from solvers.fluid.start.lattice import lattice
 from solvers.fluid.start.packing import packed
@@ -38,9 +38,9 @@ def excess_at_rest(height: np.ndarray, volume: np.ndarray, water: Water, gravity
 
 
 def air_above(polygon: np.ndarray, level: float, water: Water, gravity: float) -> np.ndarray:
-    """The particles (n, 7) of the air at rest that fills a polygon (m, 2) m over a `level` (m).
+    """The particles (n,) of the air at rest that fills a polygon (m, 2) m over a `level` (m).
 
-    At the level its pressure is that outside. Columns as of `Scene.drops`. Raises ValueError if no particle fits in.
+    At the level its pressure is that outside. Raises ValueError if no particle fits in.
     """
     upside_down = np.array(polygon, dtype=float)[::-1] * [1.0, -1.0]
     if water.start == "lattice":
@@ -48,10 +48,10 @@ def air_above(polygon: np.ndarray, level: float, water: Water, gravity: float) -
     else:
         packing = packed(upside_down, -level, water)
         points, volume = packing.points, packing.volume
-    drops = np.zeros((len(points), 7))
-    drops[:, [Y, Z]], drops[:, VOLUME], drops[:, GAS] = points * [1.0, -1.0], volume, 1.0
-    drops[:, EXCESS] = excess_at_rest(drops[:, Z] - level, drops[:, VOLUME], water, gravity)
-    return drops
+    air = particles(len(points))
+    air["position"], air["volume"], air["gas"] = points * [1.0, -1.0], volume, True
+    air["excess"] = excess_at_rest(air["position"][:, 1] - level, air["volume"], water, gravity)
+    return air
 
 
 def air_round(polygon: np.ndarray, region: np.ndarray, water: Water, gravity: float) -> np.ndarray:
@@ -62,12 +62,12 @@ def air_round(polygon: np.ndarray, region: np.ndarray, water: Water, gravity: fl
     whole = replace(water, start="packed")
     level, top = float(region[:, 1].max()), float(polygon[:, 1].max())
     packing = packed(polygon, top, whole, [region])
-    drops = np.zeros((len(packing.points), 7))
-    drops[:, [Y, Z]], drops[:, VOLUME], drops[:, GAS] = packing.points, packing.volume, 1.0
-    drops[:, EXCESS] = excess_at_rest(drops[:, Z] - level, drops[:, VOLUME], water, gravity)
-    return drops
+    air = particles(len(packing.points))
+    air["position"], air["volume"], air["gas"] = packing.points, packing.volume, True
+    air["excess"] = excess_at_rest(air["position"][:, 1] - level, air["volume"], water, gravity)
+    return air
 
 
 def with_air(of_water: np.ndarray, of_air: np.ndarray) -> np.ndarray:
-    """The particles (n, 7) of both phases, those of water (k, 6) first."""
-    return np.concatenate([np.column_stack([of_water, np.zeros(len(of_water))]), of_air])
+    """The particles (n,) of both phases, those of water first."""
+    return np.concatenate([of_water, of_air])

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
+from solvers.fluid.given import Water, particles
 from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.lattice import lattice
 from solvers.fluid.start.packing import packed
@@ -50,7 +50,7 @@ def at_rest(
     parts: Sequence[Part] = (),
     outline: np.ndarray | None = None,
 ) -> np.ndarray:
-    """The particles (n, 6) of water at rest in a polygon up to a level (m); columns as of `Scene.drops`.
+    """The particles (n,) of water at rest in a polygon up to a level (m).
 
     Beside `parts` in a tank with this `outline` (m, 2) m they are packed, see `packed_beside`.
 
@@ -63,20 +63,20 @@ def at_rest(
         points, volume = packing.points, packing.volume
     else:
         points, volume = STARTS[water.start](polygon, level, water)
-    drops = np.zeros((len(points), 6))
-    drops[:, [Y, Z]] = points
+    found = particles(len(points))
+    found["position"] = points
     weight = Reduced.weight(water, gravity)
-    drops[:, EXCESS] = hydrostatic_excess(level - points[:, 1], weight, water.sound_speed, water.state)
-    drops[:, VOLUME] = volume
-    return drops
+    found["excess"] = hydrostatic_excess(level - points[:, 1], weight, water.sound_speed, water.state)
+    found["volume"] = volume
+    return found
 
 
-def uncompressed(drops: np.ndarray, density: float, share: np.ndarray | float = 1.0) -> float:
-    """ρ0 (kg/m³) without pressure of water whose particles (n, 6) have a mean `density` (kg/m³) over their area.
+def uncompressed(start: np.ndarray, density: float, share: np.ndarray | float = 1.0) -> float:
+    """ρ0 (kg/m³) without pressure of water whose particles (n,) have a mean `density` (kg/m³) over their area.
 
     ρ0 = ρ Σ V/Σ (1 + s) V, so that Σ ρ0 (1 + s) V = ρ Σ V: some g H/(2 c0²) less than ρ, half a per cent where c0² =
     100 g H. The motion of water alone under prescribed motions of its tank does not depend on ρ0, all forces are
     proportional to it. `share` (n,) is how much of each counts, as where tanks are of different length.
     """
-    volume = share * drops[:, VOLUME]
-    return float(density * volume.sum() / ((1.0 + drops[:, EXCESS]) * volume).sum())
+    volume = share * start["volume"]
+    return float(density * volume.sum() / ((1.0 + start["excess"]) * volume).sum())

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
+from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.behind import Behind
 from solvers.motion.carrier import per_slab
@@ -32,25 +32,25 @@ def answer_at_rest(scene, behind: Behind) -> np.ndarray:
             own = (behind.tanks == tank) & (behind.volumes > 0.0)
             if end > first:
                 dummies = behind.points[own], behind.volumes[own], behind.straight[own]
-                of_tank = _answer(scene.water, scene.drops[w, first:end], *dummies)
+                of_tank = _answer(scene.fluid.water, scene.fluid.particles[w, first:end], *dummies)
                 found[w] += factor[w, first] * of_tank
     return found
 
 
 def _answer(
-    water: Water, drops: np.ndarray, points: np.ndarray, volumes: np.ndarray, straight: np.ndarray
+    water: Water, particles: np.ndarray, points: np.ndarray, volumes: np.ndarray, straight: np.ndarray
 ) -> np.ndarray:
     """A (3, 3) of the dummies of a tank at `points` (n, 2) m, with `straight` of them, per metre of slab."""
     from scipy.spatial import cKDTree  # slow to import
 
-    pairs = cKDTree(points).sparse_distance_matrix(cKDTree(drops[:, [Y, Z]]), water.reach, output_type="ndarray")
+    pairs = cKDTree(points).sparse_distance_matrix(cKDTree(particles["position"]), water.reach, output_type="ndarray")
     w, f, away = pairs["i"], pairs["j"], pairs["v"]
     kernel, step = KERNELS[water.kernel], TINY * water.length
     near = np.minimum(away + step, water.reach), np.maximum(away - step, 0.0)
     value = kernel.printed(away, water.length)
     steep = (kernel.printed(near[1], water.length) - kernel.printed(near[0], water.length)) / (near[0] - near[1]) / away
-    way, volume = points[w] - drops[f][:, [Y, Z]], drops[f, VOLUME]
-    heavy = water.density * (1.0 + drops[f, EXCESS]) * volume
+    way, volume = points[w] - particles["position"][f], particles["volume"][f]
+    heavy = water.density * (1.0 + particles["excess"][f]) * volume
     seen = np.maximum(np.bincount(w, volume * value, len(points)), 1e-30)
     lever = _summed(w, (heavy * value)[:, None] * way, len(points)) / seen[:, None]
     push = _summed(w, (volume * steep)[:, None] * way, len(points)) * volumes[:, None]

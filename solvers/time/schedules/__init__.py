@@ -55,11 +55,10 @@ def check_cut(units: int, schedule: int, vectors: int, grains: int) -> None:
 
 def moved(scene) -> int:
     """Number of grains and of particles of water that are moved in a world; a liquid without particles has none."""
-    flows = scene.water is not None and scene.water.model == "sph"
-    return scene.radius.shape[1] + (scene.particles if flows else 0)
+    return scene.radius.shape[1] + (scene.fluid.moved if scene.fluid else 0)
 
 
 def work(scene) -> int:
     """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
-    water = moved(scene) - scene.radius.shape[1]
-    return max(scene.worlds, scene.radius.size + scene.worlds * water // scene.water_pace)
+    flowing = scene.worlds * scene.fluid.moved // scene.fluid.pace if scene.fluid else 0
+    return max(scene.worlds, scene.radius.size + flowing)

@@ -11,7 +11,6 @@ from lab.assembly.water import air_volumes_of, drops_of, updates, volumes_of
 from lab.preset.merge import merged, nested
 from lab.preset.recorded import from_table, to_table
 from lab.preset.schema import Preset, resolve
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Y, Z
 from solvers.fluid.phases.adiabatic import Adiabatic, background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.start.air import hydrostatic_air
@@ -62,7 +61,7 @@ def test_air_that_becomes_stiff_begins_with_the_sound_of_the_water():
     assert (water.air.sound_speed, water.air.soft_speed, water.air.stiff_from) == (343.0, water.sound_speed, 0.75)
     assert water.softened.air.sound_speed == water.sound_speed
     assert water.background == airy().liquid.background < airy(**REAL).liquid.background
-    masses = [drops[:, VOLUME] @ ((1.0 + drops[:, EXCESS]) * drops[:, GAS]) for drops in map(drops_of, made(late))]
+    masses = [drops["volume"] @ ((1.0 + drops["excess"]) * drops["gas"]) for drops in map(drops_of, made(late))]
     assert masses[0] == pytest.approx(masses[1], rel=1e-9) and masses[2] < (1.0 - 1e-3) * masses[1]
 
 
@@ -75,14 +74,16 @@ def test_steps_are_long_while_air_is_soft():
     """A power of two of the stiff air's steps, within the bounds of both, with the fewest steps in all."""
     late = airy(**REAL, air__stiff_from="0.75 s", run__precision="mixed")
     scene, stiff, soft = (build(preset)[0] for preset in (late, airy(**REAL), airy()))
-    assert scene.soft_stride in (16, 32)  # 343 over 9.9 m/s is 35
-    assert scene.step <= stiff.step_limits()[0].step and scene.soft_stride * scene.step <= soft.step_limits()[0].step
+    assert scene.fluid.soft_stride in (16, 32)  # 343 over 9.9 m/s is 35
+    assert (
+        scene.step <= stiff.step_limits()[0].step and scene.fluid.soft_stride * scene.step <= soft.step_limits()[0].step
+    )
     rows = round(1.0 / late.record.series_rate / scene.step)
-    assert rows % scene.soft_stride == 0
+    assert rows % scene.fluid.soft_stride == 0
     taken = updates(scene, round(1.0 / scene.step)) / scene.particles
     assert 1.0 / soft.step < taken < 0.36 / stiff.step
     forced = build(airy(**REAL, air__stiff_from="0.75 s", run__step=f"{1e6 * stiff.step} us"))[0]
-    assert forced.soft_stride == 1 and forced.step == pytest.approx(stiff.step)
+    assert forced.fluid.soft_stride == 1 and forced.step == pytest.approx(stiff.step)
 
 
 def test_a_preset_with_air_comes_back_from_its_table():
@@ -93,20 +94,20 @@ def test_a_preset_with_air_comes_back_from_its_table():
 
 def test_air_fills_what_the_water_leaves():
     """Both phases have their areas, each particle a place within its own, and masses by the pressure there."""
-    drops = drops_of(airy())[None]
-    water, air = volumes_of(drops, 1), air_volumes_of(drops, 1)
-    assert water.sum() == pytest.approx(0.04) and air.sum() == pytest.approx(0.04)
-    gas = drops[0, :, GAS] > 0.5
+    scene = build(airy(run__repeats=1))[0]
+    drops = scene.fluid.particles
+    assert volumes_of(scene).sum() == pytest.approx(0.04) and air_volumes_of(scene).sum() == pytest.approx(0.04)
+    gas = drops["gas"][0]
     assert (np.diff(gas.astype(int)) >= 0).all()  # the water first
-    assert (drops[0, ~gas, Z] < 0.1).all() and (drops[0, gas, Z] > 0.1).all()
-    assert (drops[0, ~gas, EXCESS] > 0.0).all() and (drops[0, gas, EXCESS] < 0.0).all()
+    assert (drops["position"][0, ~gas, 1] < 0.1).all() and (drops["position"][0, gas, 1] > 0.1).all()
+    assert (drops["excess"][0, ~gas] > 0.0).all() and (drops["excess"][0, gas] < 0.0).all()
 
 
 def test_air_lies_round_a_column():
     drops = drops_of(airy(water__region=COLUMN))
-    gas, inside = drops[:, GAS] > 0.5, (drops[:, Y] < -0.1) & (drops[:, Z] < 0.15)
+    gas, inside = drops["gas"] > 0.5, (drops["position"][:, 0] < -0.1) & (drops["position"][:, 1] < 0.15)
     np.testing.assert_array_equal(inside, ~gas)
-    assert drops[gas, VOLUME].sum() == pytest.approx(0.4 * 0.2 - 0.1 * 0.15)
+    assert drops["volume"][gas].sum() == pytest.approx(0.4 * 0.2 - 0.1 * 0.15)
 
 
 def test_air_at_rest_is_in_balance_with_its_weight():
@@ -187,5 +188,5 @@ def test_pressures_over_those_of_a_heavy_fluid():
         max(1000.0 * made.speed**2, 500.0 * (9.81 * made.length + made.speed**2)), rel=1e-6
     )
     assert made.background < whole.background
-    drops = build(reduced)[0].drops[0]
-    assert (drops[drops[:, GAS] > 0.5, EXCESS] == 0.0).all() and drops[:, EXCESS].max() > 0.0
+    drops = build(reduced)[0].fluid.particles[0]
+    assert (drops["excess"][drops["gas"]] == 0.0).all() and drops["excess"].max() > 0.0

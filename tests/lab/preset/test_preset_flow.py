@@ -6,7 +6,6 @@ import pytest
 from lab.assembly.water import drops_of
 from lab.preset.find import load
 from lab.preset.sections.water.liquid import expected_speed
-from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Y, Z
 from solvers.fluid.start.flow import vortices
 from tests.lab.preset.test_preset_water import COLUMN, GATE, GRAINS, SHIP, fault, wet
 
@@ -23,10 +22,10 @@ def test_a_drop_starts_with_its_flow_and_the_pressure_that_this_takes():
     """u = σ (y, −z) about its middle, and p = ρ (σ² + Ω²)(R² − r²)/2."""
     preset = wet(**SWUNG)
     drops, water = drops_of(preset), preset.liquid
-    arm = drops[:, [Y, Z]] - [0.1, 0.25]
-    assert drops[:, VOLUME].sum() == pytest.approx(np.pi * 0.1**2, rel=1e-3)
-    np.testing.assert_allclose(drops[:, [VELOCITY_Y, VELOCITY_Z]], 2.0 * arm * [1.0, -1.0], atol=1e-9)
-    pressure = drops[:, EXCESS] * water.sound_speed**2
+    arm = drops["position"] - [0.1, 0.25]
+    assert drops["volume"].sum() == pytest.approx(np.pi * 0.1**2, rel=1e-3)
+    np.testing.assert_allclose(drops["velocity"], 2.0 * arm * [1.0, -1.0], atol=1e-9)
+    pressure = drops["excess"] * water.sound_speed**2
     np.testing.assert_allclose(pressure, 6.5 * (0.01 - (arm**2).sum(axis=1)), atol=4e-4 * 0.065)
     assert water.pull.rate == 3.0 and water.pull.centre == pytest.approx((0.1, 0.25))
     assert expected_speed(preset) == pytest.approx(0.1 * (2.0 + 3.0))
@@ -40,32 +39,32 @@ def test_a_drop_takes_the_place_of_the_depth_of_its_base():
 
 def test_a_drop_with_weight_falls_without_pressure():
     drops = drops_of(wet(**DROP | {"run__gravity": "9.81 m/s^2"}))
-    assert not drops[:, EXCESS].any() and not drops[:, VELOCITY_Y].any()
+    assert not drops["excess"].any() and not drops["velocity"][:, 0].any()
 
 
 def test_a_turning_region_is_under_suction():
     square = [["-100 mm", "150 mm"], ["100 mm", "150 mm"], ["100 mm", "350 mm"], ["-100 mm", "350 mm"]]
     preset = wet(**FREE, water__region=square, water__spacing="10 mm", water__flow={"rotation": "5 rad/s"})
     drops = drops_of(preset)
-    arm = drops[:, [Y, Z]] - [0.0, 0.25]
-    np.testing.assert_allclose(drops[:, VELOCITY_Y], -5.0 * arm[:, 1], atol=1e-9)
-    assert drops[:, EXCESS].min() * preset.liquid.sound_speed**2 == pytest.approx(-25.0 * 0.04 * 0.147, rel=0.02)
+    arm = drops["position"] - [0.0, 0.25]
+    np.testing.assert_allclose(drops["velocity"][:, 0], -5.0 * arm[:, 1], atol=1e-9)
+    assert drops["excess"].min() * preset.liquid.sound_speed**2 == pytest.approx(-25.0 * 0.04 * 0.147, rel=0.02)
 
 
 def test_vortices_fill_a_periodic_tank():
     preset = wet(**ROUND, water__flow={"vortices": "0.5 m/s"}, tank__width="1 m")
     drops, water = drops_of(preset), preset.liquid
     assert (water.periodic, water.walls) == (("y", "z"), False) and len(drops) == 50 * 25
-    flow = 0.5 * vortices(drops[:, [Y, Z]] - [-0.5, 0.0], (1.0, 0.5))
-    np.testing.assert_allclose(drops[:, [VELOCITY_Y, VELOCITY_Z]], flow)
+    flow = 0.5 * vortices(drops["position"] - [-0.5, 0.0], (1.0, 0.5))
+    np.testing.assert_allclose(drops["velocity"], flow)
 
 
 def test_a_periodic_pool_keeps_its_floor_and_weight():
     preset = wet(**LONG, tank__width="1 m")
     assert (preset.liquid.periodic, preset.liquid.walls) == (("y",), True)
-    assert drops_of(preset)[:, EXCESS].max() > 0.0
+    assert drops_of(preset)["excess"].max() > 0.0
     channel = wet(**ROUND | {"water__periodic": "z", "run__gravity": "0.4 m/s^2"})
-    assert not drops_of(channel)[:, EXCESS].any()  # it flows down without end
+    assert not drops_of(channel)["excess"].any()  # it flows down without end
 
 
 @pytest.mark.parametrize("name", ["drop-strained", "drop-pulled", "square-patch", "taylor-green"])

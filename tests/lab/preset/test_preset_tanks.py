@@ -42,12 +42,12 @@ def test_each_tank_has_its_water():
     preset = load(TWO, COARSE).resolved
     scene, _ = build(preset)
     first, second = scene.fills
-    drops = scene.drops[0]
+    drops = scene.fluid.particles[0]
     assert first + second == len(drops)
-    assert drops[:first, 1].max() < 0.19 < 0.37 < drops[first:, 1].max() < 0.39
-    assert drops[:first, 5].sum() == pytest.approx(0.8 * 0.19)
-    assert drops[first:, 5].sum() == pytest.approx(0.8 * 0.39)
-    outline, volume = scene.outline, scene.drops[..., 5]
+    assert drops["position"][:first, 1].max() < 0.19 < 0.37 < drops["position"][first:, 1].max() < 0.39
+    assert drops["volume"][:first].sum() == pytest.approx(0.8 * 0.19)
+    assert drops["volume"][first:].sum() == pytest.approx(0.8 * 0.39)
+    outline, volume = scene.outline, scene.fluid.particles["volume"]
     basins = basins_of(preset, outline, (), volume)
     assert [basin.drops for basin in basins] == [slice(0, first), slice(first, len(drops))]
     assert basins[1].drawn[:, 1].min() > basins[0].drawn[:, 1].max()  # one above the other

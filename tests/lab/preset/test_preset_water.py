@@ -11,7 +11,6 @@ from lab.preset.recorded import from_table, resolved_from, to_table
 from lab.preset.schema import Preset, resolve
 from lab.preset.sections.water.liquid import depth, expected_speed, spacing, tank_speed
 from lab.preset.sections.water.schemes import SCHEMES
-from solvers.fluid.given import EXCESS, VOLUME, Y, Z
 from tests.oracles.presets import error_of
 
 TANK = """
@@ -325,14 +324,16 @@ def test_water_leaves_room_for_bodies_and_stands_at_its_level_on_either_side_of_
     block = [["-50 mm", "0 mm"], ["50 mm", "0 mm"], ["50 mm", "60 mm"], ["-50 mm", "60 mm"]]
     given = {"water__spacing": "5 mm", "run__gravity": "10 m/s^2"}
     drops = drops_of(wet(parts__block={"points": block, "closed": True}, **given))
-    assert not ((np.abs(drops[:, Y]) < 0.05) & (drops[:, Z] < 0.06)).any()
-    assert drops[:, VOLUME].sum() == pytest.approx(0.9 * 0.1 - 0.1 * 0.06, rel=1e-6)
+    assert not ((np.abs(drops["position"][:, 0]) < 0.05) & (drops["position"][:, 1] < 0.06)).any()
+    assert drops["volume"].sum() == pytest.approx(0.9 * 0.1 - 0.1 * 0.06, rel=1e-6)
     steps = [["-450 mm", "0 mm"], ["450 mm", "0 mm"], ["450 mm", "50 mm"], ["0 mm", "50 mm"], ["0 mm", "100 mm"]]
     region = {"water__depth": False, "water__region": [*steps, ["-450 mm", "100 mm"]]}
     drops = drops_of(wet(parts__gate=GATE, **given, **region))
     sound = wet(parts__gate=GATE, **given, **region).liquid.sound_speed
-    level = np.where(drops[:, Y] < 0.0, 0.1, 0.05)
-    np.testing.assert_allclose(np.log1p(drops[:, EXCESS]) * sound**2, 10.0 * (level - drops[:, Z]), rtol=1e-9)
+    level = np.where(drops["position"][:, 0] < 0.0, 0.1, 0.05)
+    np.testing.assert_allclose(
+        np.log1p(drops["excess"]) * sound**2, 10.0 * (level - drops["position"][:, 1]), rtol=1e-9
+    )
 
 
 def test_water_is_packed_beside_slanted_plates_and_cut_from_a_lattice_beside_others():
@@ -341,8 +342,10 @@ def test_water_is_packed_beside_slanted_plates_and_cut_from_a_lattice_beside_oth
         plate = {"points": [["0 mm", "0 mm"], [top, "60 mm"]]}
         made = wet(parts__baffle=plate, water__spacing="10 mm", run__gravity="10 m/s^2")
         drops, sound = drops_of(made), made.liquid.sound_speed
-        assert (len(np.unique(np.round(drops[:, Z], 6))) > 100) == packs
-        assert drops[:, VOLUME].sum() == pytest.approx(0.9 * 0.1, rel=1e-9)
-        np.testing.assert_allclose(np.log1p(drops[:, EXCESS]) * sound**2, 10.0 * (0.1 - drops[:, Z]), rtol=1e-9)
+        assert (len(np.unique(np.round(drops["position"][:, 1], 6))) > 100) == packs
+        assert drops["volume"].sum() == pytest.approx(0.9 * 0.1, rel=1e-9)
+        np.testing.assert_allclose(
+            np.log1p(drops["excess"]) * sound**2, 10.0 * (0.1 - drops["position"][:, 1]), rtol=1e-9
+        )
         lattice = wet(parts__baffle=plate, water__spacing="10 mm", water__start="lattice")
-        assert len(np.unique(np.round(drops_of(lattice)[:, Z], 6))) == 10
+        assert len(np.unique(np.round(drops_of(lattice)["position"][:, 1], 6))) == 10

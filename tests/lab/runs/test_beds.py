@@ -14,7 +14,8 @@ from lab.base.progress import Progress
 from lab.preset.find import load
 from lab.preset.merge import merged
 from lab.runs import beds
-from lab.runs.beds import BedStore, bed_key, lay, made, settled, settling
+from lab.runs.bed_key import bed_key
+from lab.runs.beds import BedStore, lay, made, settled, settling
 from solvers.machine.state import Axis
 from solvers.simulation import Simulation
 
@@ -239,7 +240,7 @@ def test_the_key_of_a_bed_depends_on_all_that_determines_it(monkeypatch):
     keys = [key(**other) for other in OTHERS]
     monkeypatch.setattr(Fake, "schedule_name", "per-band")
     keys.append(key())
-    monkeypatch.setattr(beds, "FORMAT", "cargo-shift-lab bed 0")
+    monkeypatch.setattr("lab.runs.bed_key.FORMAT", "cargo-shift-lab bed 0")
     keys.append(key())
     assert len({own, *keys}) == len(keys) + 1
 

@@ -31,7 +31,7 @@ def numbers(place: np.ndarray, **changes: float) -> dict[str, np.ndarray]:
 )
 def test_what_differs_by_more_than_rounding_fails(changes, failing):
     case = gentle(ROWS)
-    place = case.drops[:, :2]
+    place = case.drops["position"]
     rows = water.compared(numbers(place, **changes), numbers(place), "f32", case)
     assert [words for _, words, *_, verdict in rows if verdict == "fail"] == failing
 

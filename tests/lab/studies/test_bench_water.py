@@ -50,7 +50,7 @@ def test_tait_is_undone():
 
 def test_errors_of_a_made_up_wave():
     """1 % too fast, a tenth lost in a period."""
-    place, omega = gentle(10).drops[:, :2], frequency()
+    place, omega = gentle(10).drops["position"], frequency()
     loss = -np.log(0.9) * omega / (2.0 * np.pi)
     frames = [
         Frame(t, place, 0.1 * np.cos(1.01 * omega * t) * np.exp(-loss * t) * mode(place), place[:, 0])
@@ -68,7 +68,7 @@ def test_the_mode_fits_the_tank():
     assert np.abs(mode(sides)[:, 0]).max() < 1e-12
     assert np.abs(mode(np.array([[0.2, 0.0]]))[:, 1]).max() < 1e-12
     step = 1e-5
-    place = case.drops[::17, :2]
+    place = case.drops["position"][::17]
     right, up = step * np.eye(2)
     across = (mode(place + right) - mode(place - right))[:, 0]
     upwards = (mode(place + up) - mode(place - up))[:, 1]
@@ -77,11 +77,11 @@ def test_the_mode_fits_the_tank():
 
 def test_errors_of_a_made_up_rest_and_front():
     case = gentle(10, steep=0.0)
-    place = case.drops[:, :2]
+    place = case.drops["position"]
     rest = Frame(1.0, place, 0.0 * place, DENSITY * GRAVITY * (1.0 - place[:, 1] + 0.02))
     assert pressure_error(rest) == pytest.approx(0.02)
     column, unit = dam(10), np.sqrt(GRAVITY * HIGH)
-    start = column.drops[:, :2].copy()
+    start = column.drops["position"].copy()
     times = np.linspace(0.0, 0.5, 21)
     frames = [Frame(t, start + np.array([1.7 * unit * t, 0.0]), start, start[:, 0]) for t in times]
     assert front_speed(column, frames)[0] == pytest.approx(1.7)
@@ -92,7 +92,7 @@ def test_a_code_that_loses_its_water_is_told_so(tmp_path):
 
     def leaking(case, seconds):
         still = case.width > 1.9
-        place = case.drops[: case.count if still else case.count // 2, :2]
+        place = case.drops["position"][: case.count if still else case.count // 2]
         return [Frame(time, place, mode(place), DENSITY * GRAVITY * (1.0 - place[:, 1])) for time in (0.0, seconds)]
 
     told = errors(leaking, 10, tmp_path)

@@ -16,7 +16,6 @@ from lab.view.footage import Scenery
 from lab.view.live import Live, LiveFrame, own_motion, steerable
 from lab.view.panel.readings import readings
 from lab.view.session import Session
-from solvers.fluid.given import VOLUME, Y, Z
 from solvers.grains.pressing import UNTOUCHED
 from solvers.machine.runtime import initialise
 
@@ -54,15 +53,15 @@ def opened(monkeypatch, tmp_path, preset):
     scenery = Scenery.of(live, tmp_path, SimpleNamespace(scene=scene, dt=1e-4))
     there.send(("ready", (scenery, own_motion(loaded.resolved))))
     for k in range(5):
-        there.send(("frame", (seen(scene.drops, 0.1 * k, 0.0), 0.5)))
+        there.send(("frame", (seen(scene.fluid.particles, 0.1 * k, 0.0), 0.5)))
         session.tick()  # a pipe holds a few frames only
-    yield session, there, scene.drops
+    yield session, there, scene.fluid.particles
     session.close()
 
 
 def seen(drops, time, tilt, depth=0.1):
     """Water whose surface stays level over the earth in a tank that has tilted about the middle of its floor."""
-    place = drops[..., [Y, Z]].copy()
+    place = drops["position"].copy()
     place[..., 1] *= 1.0 - np.tan(tilt) * place[..., 0] / depth
     moving = np.stack([np.full(place.shape[:2], 0.1), np.zeros(place.shape[:2])], axis=-1)
     drawn = {"water_place": place, "water_velocity": moving, "water_pressure": 9810.0 * (depth - place[..., 1])}
@@ -101,7 +100,7 @@ def test_the_window_says_how_much_water_there_is_and_offers_its_controls(opened)
     assert readings(session)[-1] == f"{drops.shape[1]} particles of water, 10 mm apart"
     assert {"tilt", "sway", "roll", "gravity", "depth", "spacing"} <= set(session.values)
     assert not {"friction", "diameter"} & set(session.values)
-    assert session.footage.water.volume.sum() == pytest.approx(drops[..., VOLUME].sum())
+    assert session.footage.water.volume.sum() == pytest.approx(drops["volume"].sum())
 
 
 def test_keys_go_through_the_colours_and_the_curves_of_water(opened):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Air, Gauge, Level, Water, Z
+from solvers.fluid.given import Air, Fluid, Gauge, Level, Water
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.timestep import kinematic
@@ -42,12 +42,12 @@ def test_water_rests_under_air(pool):
     """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
     again(pool, scene(background=40.0)).observe()
     pool.advance(1500)
-    rows, state, spacing = pool.observe(), pool.snapshot(), pool.scene.water.spacing
-    gas, mass = pool.scene.drops[0, :, GAS] > 0.5, held(pool)[3]
+    rows, state, spacing = pool.observe(), pool.snapshot(), pool.scene.fluid.water.spacing
+    gas, mass = pool.scene.fluid.particles["gas"][0] > 0.5, held(pool)[3]
     np.testing.assert_allclose(rows["wall_force"][0, 1], -GRAVITY * mass.sum(), rtol=3e-3)
     np.testing.assert_allclose(rows["gauge_pressure"][0, 0], 1000.0 * GRAVITY * DEPTH, rtol=0.03)
     # The surface settles by a part of a spacing, which squeezes the air of eight layers by some per cent.
-    over, stiff = rows["gauge_pressure"][0, 1] + 1.2 * GRAVITY * 0.12, 1.2 * pool.scene.water.air.sound_speed**2
+    over, stiff = rows["gauge_pressure"][0, 1] + 1.2 * GRAVITY * 0.12, 1.2 * pool.scene.fluid.water.air.sound_speed**2
     assert abs(over) < 0.03 * stiff
     np.testing.assert_allclose(rows["level_depth"][0], DEPTH, atol=0.25 * spacing)
     assert rows["air_volume"][0] == pytest.approx(WIDTH * (HEIGHT - DEPTH), rel=0.02)
@@ -59,27 +59,28 @@ def test_water_rests_under_air(pool):
 def test_a_gauge_that_sees_more_air_than_water_shows_the_air(pool):
     """Squeezed water ends two fifths of a spacing below the middle of a gauge, which shows nothing of it."""
     made = scene(background=40.0)
-    wet, spacing = made.drops[0, :, GAS] < 0.5, made.water.spacing
-    made.drops[0, :, 1] -= 0.4 * spacing
-    made.drops[0, wet, EXCESS] = 0.01
+    wet, spacing = made.fluid.particles["gas"][0] < 0.5, made.fluid.water.spacing
+    made.fluid.particles["position"][0, :, 1] -= 0.4 * spacing
+    made.fluid.particles["excess"][0, wet] = 0.01
     run = again(pool, made)
     run.advance(2)
-    shown, squeezed = run.observe()["gauge_pressure"][0], 0.01 * 1000.0 * made.water.sound_speed**2
+    shown, squeezed = run.observe()["gauge_pressure"][0], 0.01 * 1000.0 * made.fluid.water.sound_speed**2
     assert shown[0] > 0.5 * squeezed and shown[2] < 0.05 * squeezed
 
 
 def test_closed_air_follows_water_and_walls(pool):
     """Water flies at closed air and takes a fifth of it: the pressures of both sides follow p V^1.4 to 1 %."""
     made, long = scene(background=40.0), 0.5 * (HEIGHT - 0.08)
-    spacing, sound = made.water.spacing, made.water.air.sound_speed
+    spacing, sound = made.fluid.water.spacing, made.fluid.water.air.sound_speed
     places = (np.indices((round(WIDTH / spacing), round(HEIGHT / spacing))).reshape(2, -1).T + 0.5) * spacing
     places[:, 0] -= 0.5 * WIDTH
-    made.drops = filled(places, (np.abs(places[:, 1] - 0.5 * HEIGHT) > 0.04).astype(float), spacing**2)
-    high, at_rest = made.drops[0, :, 1], 1.2 * sound**2 / 1.4
-    made.drops[0, :, VELOCITY_Z] = 0.18 * np.minimum(1.0, np.minimum(high, HEIGHT - high) / long)
+    gas = (np.abs(places[:, 1] - 0.5 * HEIGHT) > 0.04).astype(float)
+    made.fluid = replace(made.fluid, particles=filled(places, gas, spacing**2))
+    high, at_rest = made.fluid.particles["position"][0, :, 1], 1.2 * sound**2 / 1.4
+    made.fluid.particles["velocity"][0, :, 1] = 0.18 * np.minimum(1.0, np.minimum(high, HEIGHT - high) / long)
     made.gravity = 0.0
     run = again(pool, made)
-    upper = high[made.drops[0, :, GAS] > 0.5] > 0.5 * HEIGHT
+    upper = high[made.fluid.particles["gas"][0] > 0.5] > 0.5 * HEIGHT
     run.advance(200)
     rows, pressure = run.observe(), run.snapshot()["air_pressure"][0]
     way = rows["water_centre"][0, 1] - 0.5 * HEIGHT
@@ -91,10 +92,10 @@ def test_closed_air_follows_water_and_walls(pool):
 def test_drops_fall_together_with_the_pool_below(pool):
     """Three particles of water that fall through air are part of the pool soon after, and do not hover over it."""
     made = scene(background=40.0)
-    drops, spacing = made.drops[0], made.water.spacing
-    high = (np.abs(drops[:, 0]) < 2.0 * spacing) & (np.abs(drops[:, 1] - 0.25) < 0.5 * spacing)
-    drops[high, GAS], drops[high, EXCESS] = 0.0, 0.0
-    made.drops = drops[np.argsort(drops[:, GAS], kind="stable")][None]
+    drops, spacing = made.fluid.particles[0], made.fluid.water.spacing
+    high = (np.abs(drops["position"][:, 0]) < 2.0 * spacing) & (np.abs(drops["position"][:, 1] - 0.25) < 0.5 * spacing)
+    drops["gas"][high], drops["excess"][high] = 0.0, 0.0
+    made.fluid = replace(made.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None])
     run = again(pool, made)
     run.advance(round(0.5 / run.dt))
     place = run.snapshot()["water_place"][0]
@@ -106,7 +107,7 @@ def test_drops_fall_together_with_the_pool_below(pool):
 def test_air_that_has_lost_volume_takes_it_again(pool):
     """Air of nine tenths of its mass at the density of rest: its volume comes back at the rate of 1/τ of what lacks."""
     made = scene(background=40.0)
-    made.drops[..., VOLUME] *= 1.0 - 0.1 * made.drops[..., GAS]
+    made.fluid.particles["volume"] *= 1.0 - 0.1 * made.fluid.particles["gas"]
     run = again(pool, made)
     rate = run.water.constants.numbers["air_keeping"]
     before = run.observe()["air_volume"][0]
@@ -121,10 +122,10 @@ def test_a_gauge_at_the_surface_does_not_show_the_background(pool):
     water = Water(DEPTH / ROWS, 46.5, air=air, speed=speed)
     more = {"sound_speed": 46.5, "speed": speed, "background": background(air, water)}
     made = scene(air={"sound_speed": 343.0, "alpha": 0.1}, **more)
-    k, (y, z) = np.pi / WIDTH, made.drops[0, :, :2].T
-    wet = made.drops[0, :, GAS] < 0.5
-    made.drops[0, wet, VELOCITY_Y] = 0.2 * (np.cos(k * y) * np.cosh(k * z) / np.sinh(k * DEPTH))[wet]
-    made.drops[0, wet, VELOCITY_Z] = 0.2 * (np.sin(k * y) * np.sinh(k * z) / np.sinh(k * DEPTH))[wet]
+    k, (y, z) = np.pi / WIDTH, made.fluid.particles["position"][0].T
+    wet = made.fluid.particles["gas"][0] < 0.5
+    made.fluid.particles["velocity"][0, wet, 0] = 0.2 * (np.cos(k * y) * np.cosh(k * z) / np.sinh(k * DEPTH))[wet]
+    made.fluid.particles["velocity"][0, wet, 1] = 0.2 * (np.sin(k * y) * np.sinh(k * z) / np.sinh(k * DEPTH))[wet]
     run, shown = again(pool, made), []
     run.observe()
     for step in range(1, 7):
@@ -133,18 +134,24 @@ def test_a_gauge_at_the_surface_does_not_show_the_background(pool):
     assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
 
 
+def bubble(made: Scene, near: np.ndarray, excess: float) -> None:
+    """Let the particle nearest to a place (m) be one of air, of this excess of density."""
+    at, particles = np.linalg.norm(made.fluid.particles["position"][0] - near, axis=1).argmin(), made.fluid.particles
+    particles["gas"][0, at], particles["excess"][0, at] = True, excess
+    made.fluid = replace(made.fluid, particles=particles[:, np.argsort(particles["gas"][0], kind="stable")])
+
+
 def test_a_bubble_of_one_particle_does_not_stay_stretched(pool):
     """Drawn out to twice its volume in the middle of the water it bears no more than the background within 5 h/c0."""
     made, middle = scene(background=40.0), np.array([0.0, 0.5 * DEPTH])
-    made.drops[0, np.linalg.norm(made.drops[0, :, :2] - middle, axis=1).argmin(), [GAS, EXCESS]] = 1.0, -0.5
-    made.drops = made.drops[:, np.argsort(made.drops[0, :, GAS], kind="stable")]
-    run, (z, gas) = again(pool, made), made.drops[0, :, [Z, GAS]]
+    bubble(made, middle, -0.5)
+    run, z, gas = again(pool, made), made.fluid.particles["position"][0, :, 1], made.fluid.particles["gas"][0]
     before = run.observe()["water_diffusive"][0]
     run.advance(round(5.0 / run.water.constants.numbers["relief"] / run.dt))
     p = run.water.particles
     (excess,) = (values[0] for values in p.read(p.excess))
-    (alone,) = np.flatnonzero((gas > 0.5) & (z < DEPTH))
-    least = 40.0 / (1.2 * run.scene.water.air.sound_speed**2)
+    (alone,) = np.flatnonzero(gas & (z < DEPTH))
+    least = 40.0 / (1.2 * run.scene.fluid.water.air.sound_speed**2)
     assert excess[alone] == pytest.approx((1.0 - 1.4 * least) ** (1.0 / 1.4) - 1.0, abs=0.02)
     assert run.observe()["water_diffusive"][0] > before
 
@@ -153,15 +160,14 @@ def test_a_gauge_with_a_bubble_before_it_shows_the_waters_pressure(pool):
     """A particle of air on the floor keeps its density of outside: it bears nothing of what the water about it has."""
     made = scene(background=40.0)
     corner = np.array([0.5 * WIDTH, 0.0])
-    made.drops[0, np.linalg.norm(made.drops[0, :, :2] - corner, axis=1).argmin(), [GAS, EXCESS]] = 1.0, 0.0
-    made.drops = made.drops[:, np.argsort(made.drops[0, :, GAS], kind="stable")]
+    bubble(made, corner, 0.0)
     run, shown, about = again(pool, made), [], []
     for _ in range(10):
         run.advance(20)
         shown.append(run.observe()["gauge_pressure"][0, 0])
         state = run.snapshot()
         place, pressure = state["water_place"][0], state["water_pressure"][0]
-        near = np.linalg.norm(place - corner, axis=1) < 2.0 * run.scene.water.spacing
+        near = np.linalg.norm(place - corner, axis=1) < 2.0 * run.scene.fluid.water.spacing
         about.append((pressure + 1000.0 * GRAVITY * place[:, 1])[near].mean())
     assert np.mean(shown) == pytest.approx(np.mean(about), rel=0.1)
 
@@ -169,13 +175,14 @@ def test_a_gauge_with_a_bubble_before_it_shows_the_waters_pressure(pool):
 def stirred(step: float | None = None, **of_air) -> Scene:
     """Both phases displaced and set in motion at random, the air slower than the water's sound, with drops in it."""
     made = scene(air={"sound_speed": 9.0, "alpha": 0.03} | of_air, background=60.0, step=step)
-    random, drops = np.random.default_rng(1), made.drops
-    off_walls = (np.abs(drops[0, :, 0]) < 0.08) & (drops[0, :, 1] < 0.24)
-    lone = np.flatnonzero(off_walls & (drops[0, :, GAS] > 0.5))[::7]
-    drops[0, lone, GAS], drops[0, lone, EXCESS] = 0.0, 0.0
-    made.drops = drops = drops[:, np.argsort(drops[0, :, GAS], kind="stable")]
-    drops[..., :2] += 0.1 * made.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
-    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    random, drops = np.random.default_rng(1), made.fluid.particles
+    off_walls = (np.abs(drops["position"][0, :, 0]) < 0.08) & (drops["position"][0, :, 1] < 0.24)
+    lone = np.flatnonzero(off_walls & (drops["gas"][0] > 0.5))[::7]
+    drops["gas"][0, lone], drops["excess"][0, lone] = 0.0, 0.0
+    drops = drops[:, np.argsort(drops["gas"][0], kind="stable")]
+    made.fluid = replace(made.fluid, particles=drops)
+    drops["position"] += 0.1 * made.fluid.water.spacing * random.uniform(-1.0, 1.0, drops["position"].shape)
+    drops["velocity"] = 0.2 * random.uniform(-1.0, 1.0, drops["position"].shape)
     return made
 
 
@@ -221,14 +228,14 @@ def test_other_ways_of_running_give_the_same(changes):
     place = []
     for more in ({}, changes):
         made = scene(**more)
-        made.drops[..., VELOCITY_Y] = 0.1
+        made.fluid.particles["velocity"][..., 0] = 0.1
         other = Simulation(made, threads=1, arch="cpu")
         other.advance(60)
         state = other.snapshot()
         place.append(np.concatenate([state["water_place"][0], state["air_place"][0]]))
         other.close()
     tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
-    np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
+    np.testing.assert_allclose(place[1], place[0], atol=tight * made.fluid.water.spacing)
 
 
 @pytest.mark.slow
@@ -244,7 +251,7 @@ def test_water_rests_under_air_with_cohesion():
     air = {"interface": "cohesion", "cohesion": pull, "sound_speed": 4.0 * sound, "alpha": 0.07}
     run = Simulation(scene(sound_speed=sound, smoothing=1.34, alpha=0.07, air=air), threads=1, arch="cpu")
     run.advance(round(1.0 / run.dt))
-    rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
+    rows, state, spacing = run.observe(), run.snapshot(), run.scene.fluid.water.spacing
     middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
     assert abs(middle - DEPTH) < 0.5 * spacing
     assert rows["gauge_pressure"][0, 0] == pytest.approx(1000.0 * GRAVITY * DEPTH, abs=0.1 * pull)
@@ -259,8 +266,8 @@ def test_tension_keeps_momentum():
     places = (np.indices((24, 24)).reshape(2, -1).T + 0.5) / 24.0
     places[:, 0] -= 0.5
     gas = np.hypot(places[:, 0] / 0.31, (places[:, 1] - 0.5) / 0.2) > 1.0
-    given = {"outline": box(1.0, 1.0), "gravity": 0.0, "water": water}
-    run = Simulation(Scene(np.zeros((1, 0)), **given, drops=filled(places, gas.astype(float), 1.0 / 576.0)), threads=1)
+    fluid = Fluid(water, filled(places, gas.astype(float), 1.0 / 576.0))
+    run = Simulation(Scene(np.zeros((1, 0)), box(1.0, 1.0), gravity=0.0, fluid=fluid), threads=1)
     run.advance(300)
     _, velocity, _, mass, *_ = held(run)
     assert np.abs(mass @ velocity).max() < 1e-12 * (mass @ np.hypot(*velocity.T))
@@ -270,8 +277,8 @@ def test_tension_keeps_momentum():
 def test_air_flows_out_through_a_vent():
     """From air half as dense again: its pressure follows dM/dt = −C_d A √(2 ρ p), p of M/V, to that outside."""
     made = scene(background=1.0, air={"vent": 2e-2})
-    air, drops = made.water.air, made.drops
-    drops[..., EXCESS] = np.where(drops[..., GAS] > 0.5, 0.5, drops[..., EXCESS])
+    air, drops = made.fluid.water.air, made.fluid.particles
+    drops["excess"] = np.where(drops["gas"] > 0.5, 0.5, drops["excess"])
     run = Simulation(made, threads=1, arch="cpu")
     room, dense, stiff = WIDTH * (HEIGHT - DEPTH), 1.5, air.density * air.sound_speed**2
     run.observe()

@@ -7,7 +7,7 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.preset.find import load
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME
+from solvers.fluid.given import particles
 from solvers.fluid.walls.between import RATES, SHARES, Between
 from solvers.motion.harmonic import Roll, Sway
 from solvers.scene import Scene
@@ -26,9 +26,9 @@ def drop(velocity, spacing=0.01, **how):
     """A square of water all alike, so that nothing but walls before and behind acts on it; and its first places."""
     side = (np.arange(20) + 0.5) * spacing
     grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
-    drops = np.zeros((1, len(grid), 6))
-    drops[0, :, :2], drops[..., VOLUME] = grid, spacing**2
-    drops[0, :, VELOCITY_Y], drops[0, :, VELOCITY_Z] = velocity
+    drops = particles(1, len(grid))
+    drops["position"][0], drops["volume"] = grid, spacing**2
+    drops["velocity"][0, :, 0], drops["velocity"][0, :, 1] = velocity
     return still(2.0, 2.0, 0.2, 20, drops=drops, walls=False, gravity=0.0, sound_speed=10.0, **(NARROW | how)), grid
 
 
@@ -90,7 +90,7 @@ def test_a_free_drop_is_stopped_as_flow_between_walls_is():
     """All of it alike, so that nothing else acts; the walls have its momentum, and viscosity its energy."""
     velocity = np.array([0.6, -0.2])
     scene, grid = drop(velocity)
-    assert Between.rate(scene.water) == pytest.approx(RATE)
+    assert Between.rate(scene.fluid.water) == pytest.approx(RATE)
     odd = np.arange(1, 400, 2)[:, None]
     share, rate = 8.0 / (np.pi * odd) ** 2, odd**2 * SLOWEST
     run = Simulation(scene, threads=1, arch="cpu")

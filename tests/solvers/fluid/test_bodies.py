@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, VOLUME
+from solvers.fluid.given import particles
 from solvers.fluid.start.parts import clear_of
 from solvers.fluid.start.rest import at_rest
 from solvers.motion.harmonic import Heave, Roll, Sway
@@ -27,10 +27,10 @@ def stirred(share: float) -> Scene:
     """
     square = Body(SIDES, closed=True, motions=(Sway(0.02 * share, 2.0), Roll(0.1 * share, 1.5, centre=(0.0, 0.15))))
     parts = square, Body(FLAP, motions=(Roll(0.1 * share, 1.0, centre=FLAP[0]),)), Body(BAFFLE)
-    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
-    beyond = drops[0, :, 0] > FLAP[0][0]
-    drops[0, beyond, EXCESS] -= (DEPTH - LOW) / (100.0 * DEPTH)
-    free = clear_of(drops[0, :, :2], parts, SPACING) & ~(beyond & (drops[0, :, 1] > LOW))
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).fluid.particles
+    beyond = drops["position"][0, :, 0] > FLAP[0][0]
+    drops["excess"][0, beyond] -= (DEPTH - LOW) / (100.0 * DEPTH)
+    free = clear_of(drops["position"][0], parts, SPACING) & ~(beyond & (drops["position"][0, :, 1] > LOW))
     return still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, drops=drops[:, free], alpha=0.02)
 
 
@@ -113,12 +113,12 @@ def test_a_plate_is_as_tight_as_a_wall():
     To 1e-4 of a spacing: dummies slide along the plate to its very end, but askew behind the corner of a tank.
     """
     plate = Body(((0.0, 0.0), (0.0, HEIGHT)))
-    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
-    left, low = drops[0, :, 0] < 0.0, 0.1
-    other = ~left & (drops[0, :, 1] < low)
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).fluid.particles
+    left, low = drops["position"][0, :, 0] < 0.0, 0.1
+    other = ~left & (drops["position"][0, :, 1] < low)
     whole, alone = drops[:, left | other], drops[:, left]
     beyond = whole[0, :, 0] > 0.0
-    whole[0, beyond, EXCESS] = GRAVITY * (low - whole[0, beyond, 1]) / (100.0 * GRAVITY * DEPTH)
+    whole["excess"][0, beyond] = GRAVITY * (low - whole[0, beyond, 1]) / (100.0 * GRAVITY * DEPTH)
     half = box(0.5 * WIDTH, HEIGHT) - [0.25 * WIDTH, 0.0]
     scenes = {"parts": (plate,), "drops": whole}, {"outline": half, "drops": alone}
     runs = [Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, **changes), threads=1, arch="cpu") for changes in scenes]
@@ -146,8 +146,8 @@ RIDGE = np.array([(-0.3, 0.0), (-0.1, 0.0), (0.0, 0.14), (0.1, 0.0), (0.3, 0.0),
 def test_water_that_starts_as_a_lattice_round_free_ends_comes_to_rest(given, seconds, most):
     """R.m.s. speed (m/s): packed water in a box without plates has 1.7 mm/s after 4 s."""
     solid = given.get("parts") or (Body(RIDGE[1:4].tolist(), closed=True),)
-    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
-    drops = drops[:, clear_of(drops[0, :, :2], solid, SPACING)]
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).fluid.particles
+    drops = drops[:, clear_of(drops["position"][0], solid, SPACING)]
     run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, drops=drops, alpha=0.02, **given), threads=1, arch="cpu")
     run.advance(round(seconds / run.dt))
     assert np.sqrt((run.snapshot()["water_velocity"][0] ** 2).sum(axis=1).mean()) < most
@@ -159,7 +159,7 @@ def test_water_packed_beside_a_slanted_plate_stays_still(points):
     """Within 8 s, r.m.s., to 0.02 √(g Δx), the speed of a fall by Δx/5000; a lattice stirs to two to seven times it."""
     parts = (Body(points),)
     scene = still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, alpha=0.02)
-    drops = at_rest(scene.outline, DEPTH, scene.water, GRAVITY, parts, scene.outline)[None]
+    drops = at_rest(scene.outline, DEPTH, scene.fluid.water, GRAVITY, parts, scene.outline)[None]
     run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, drops=drops, alpha=0.02), threads=1, arch="cpu")
     for seconds in (4.0, 8.0):
         run.advance(round(seconds / run.dt) - round(run.time / run.dt))
@@ -179,8 +179,8 @@ def test_a_swaying_cylinder_has_the_added_mass_of_potential_theory():
     side = (np.arange(-count, count) + 0.5) * spacing
     grid = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
     grid = grid[(np.hypot(*grid.T) > inner + 0.3 * spacing) & (np.hypot(*grid.T) < outer - 0.3 * spacing)]
-    drops = np.zeros((1, len(grid), 6))
-    drops[0, :, :2], drops[..., VOLUME] = grid, np.pi * (outer**2 - inner**2) / len(grid)
+    drops = particles(1, len(grid))
+    drops["position"][0], drops["volume"] = grid, np.pi * (outer**2 - inner**2) / len(grid)
     changes = {"outline": outer * ring, "parts": (body,), "drops": drops, "gravity": 0.0, "full": True}
     scene = still(1.0, 1.0, 20 * spacing, 20, sound_speed=40.0, **changes)
     run = Simulation(scene, threads=1, arch="cpu")

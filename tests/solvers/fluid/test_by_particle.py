@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from solvers.fluid.given import VOLUME
+from solvers.fluid.given import particles
 from solvers.simulation import Simulation
 from tests.oracles.water import still
 from tests.solvers.fluid import test_step as same
@@ -72,6 +72,6 @@ def falling() -> np.ndarray:
     """A square of water beside the middle of a tank, above its floor."""
     side = (np.arange(20) + 0.5) * 0.02
     grid = np.stack(np.meshgrid(0.1 + side, 0.3 + side, indexing="ij"), axis=-1).reshape(-1, 2)
-    drops = np.zeros((1, len(grid), 6))
-    drops[0, :, :2], drops[..., VOLUME] = grid, 0.02**2
+    drops = particles(1, len(grid))
+    drops["position"][0], drops["volume"] = grid, 0.02**2
     return drops

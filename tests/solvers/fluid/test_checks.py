@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from solvers.fluid.checks import CREATED, check_water, outside, refuse_state
-from solvers.fluid.given import VELOCITY_Z, Water
+from solvers.fluid.given import Water
 from solvers.fluid.grid import watched_box
 from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE
 from solvers.machine.errors import BadState
@@ -37,7 +37,7 @@ def test_nothing_is_outside_of_closed_tanks():
 def poured():
     """A drop in an open tank, and one beside it on which nothing acts but gravity."""
     drops = lattice(0.04, 0.01, 5e-3, 4.0)
-    drops[0, 0, :2] = 0.2, 0.0
+    drops["position"][0, 0] = 0.2, 0.0
     scene = still(0.1, 0.05, 0.01, 2, drops=drops, open_edges=(2,), sound_speed=4.0)
     run = Simulation(replace(scene, step=scene.time_step()), threads=1, arch="cpu")
     yield run
@@ -55,9 +55,9 @@ def test_what_has_left_an_open_tank_may_fall_as_fast_as_it_will(poured):
 
 @pytest.mark.slow
 def test_what_is_in_an_open_tank_may_not(poured):
-    drops = poured.scene.drops.copy()
-    drops[0, 0, :2], drops[0, 0, VELOCITY_Z] = (0.0, 0.03), 3.0
-    run = again(poured, replace(poured.scene, drops=drops))
+    drops = poured.scene.fluid.particles.copy()
+    drops["position"][0, 0], drops["velocity"][0, 0, 1] = (0.0, 0.03), 3.0
+    run = again(poured, replace(poured.scene, fluid=replace(poured.scene.fluid, particles=drops)))
     with pytest.raises(BadState, match=r"water moves at [23.]+.* m/s, Mach 0\.[67]"):
         run.advance(10)
 
@@ -65,10 +65,10 @@ def test_what_is_in_an_open_tank_may_not(poured):
 @pytest.mark.slow
 def test_what_comes_back_into_an_open_tank_is_watched_again(poured):
     """Thrown down from above the brim it is let pass until it is in the box."""
-    drops = poured.scene.drops.copy()
-    high = 0.05 + 2.0 * poured.scene.water.reach
-    drops[0, 0, :2], drops[0, 0, VELOCITY_Z] = (0.0, high), -3.0
-    run = again(poured, replace(poured.scene, drops=drops))
+    drops = poured.scene.fluid.particles.copy()
+    high = 0.05 + 2.0 * poured.scene.fluid.water.reach
+    drops["position"][0, 0], drops["velocity"][0, 0, 1] = (0.0, high), -3.0
+    run = again(poured, replace(poured.scene, fluid=replace(poured.scene.fluid, particles=drops)))
     run.advance(2)
     assert run.snapshot()["water_place"][0, 0, 1] < high
     with pytest.raises(BadState, match=r"water moves at [23.]+.* m/s, Mach 0\.[67].*z = 0\.0[456]"):

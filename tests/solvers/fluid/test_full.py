@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from solvers.fluid.checks import residual
-from solvers.fluid.given import EXCESS, Gauge
+from solvers.fluid.given import Gauge
 from solvers.simulation import Simulation
 from solvers.tank.parts import Body
 from tests.oracles.water import box, lattice, still
@@ -27,9 +27,9 @@ def run() -> Iterator[Simulation]:
     square = Body(tuple(map(tuple, corners(-1.2))), (2.4, 0.0), speed=SPEED, acceleration=2.0, closed=True)
     rows, sound = round(HEIGHT / SPACING), 40.0 * SPEED
     drops = lattice(WIDTH, HEIGHT, SPACING, sound)
-    drops[..., EXCESS] = 0.0
+    drops["excess"] = 0.0
     low, high = corners(-1.2).min(axis=0), corners(-1.2).max(axis=0)
-    beside = ((drops[0, :, :2] < low) | (drops[0, :, :2] > high)).any(axis=1)
+    beside = ((drops["position"][0] < low) | (drops["position"][0] > high)).any(axis=1)
     water = {"sound_speed": sound, "background": BACKGROUND, "shifting": "delta-plus", "speed": SPEED, "full": True}
     water["gauges"] = (Gauge((0.0, 0.0), 0.1),)
     scene = still(WIDTH, HEIGHT, HEIGHT, rows, gravity=0.0, parts=(square,), drops=drops[:, beside], **water)

@@ -22,8 +22,8 @@ ACROSS = ((0.0, 0.0), (0.0, HEIGHT))
 
 def pushed(*plates: Part) -> Simulation:
     """Water beside plates that move, ten times as fast in sound as they are."""
-    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
-    drops = drops[:, clear_of(drops[0, :, :2], plates, SPACING)]
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).fluid.particles
+    drops = drops[:, clear_of(drops["position"][0], plates, SPACING)]
     scene: Scene = still(WIDTH, HEIGHT, DEPTH, ROWS, parts=plates, drops=drops, sound_speed=10.0 * SPEED)
     return Simulation(scene, threads=1, arch="cpu")
 

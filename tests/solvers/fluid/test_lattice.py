@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, VOLUME, Water
+from solvers.fluid.given import Water
 from solvers.fluid.start.lattice import from_edges, lattice
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.tank.outline import area_below
@@ -60,10 +60,10 @@ def test_the_pressure_balances_the_weight_at_every_depth(state, exponent):
 def test_the_water_weighs_what_its_floor_bears():
     water = Water(spacing=0.005, sound_speed=10.0)
     drops = at_rest(BOX, 0.2, water, 9.81)
-    mass = water.density * ((1.0 + drops[:, EXCESS]) * drops[:, VOLUME]).sum()
+    mass = water.density * ((1.0 + drops["excess"]) * drops["volume"]).sum()
     floor = water.density * 10.0**2 * hydrostatic_excess(0.2, 9.81, 10.0, "linear")
     assert 9.81 * mass == pytest.approx(0.9 * floor, rel=1e-4)
-    assert not drops[:, 2:4].any()
+    assert not drops["velocity"].any()
 
 
 def test_particles_that_do_not_fit_are_refused():

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Pull
+from solvers.fluid.given import Pull, particles
 from solvers.motion.harmonic import Heave, Roll, Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -21,9 +21,9 @@ def drop(rate: float, across: int = 20, **changes):
     side = (np.arange(across) + 0.5) * spacing - 0.1
     grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
     grid = grid[np.hypot(*grid.T) < 0.1]
-    drops = np.zeros((1, len(grid), 6))
-    drops[0, :, :2], drops[..., VOLUME] = grid, spacing**2
-    drops[0, :, VELOCITY_Y], drops[0, :, VELOCITY_Z] = rate * grid[:, 0], -rate * grid[:, 1]
+    drops = particles(1, len(grid))
+    drops["position"][0], drops["volume"] = grid, spacing**2
+    drops["velocity"][0, :, 0], drops["velocity"][0, :, 1] = rate * grid[:, 0], -rate * grid[:, 1]
     return still(1.0, 1.0, spacing * 20, 20, drops=drops, **(DROP | changes))
 
 
@@ -54,8 +54,8 @@ def free(run: Simulation, scene: Scene) -> Simulation:
 
 def test_a_free_drop_keeps_its_momentum_and_turning(strained):
     scene = drop(2.0)
-    scene.drops[0, :, VELOCITY_Y] -= 3.0 * scene.drops[0, :, 1]  # it also turns
-    scene.drops[0, :, VELOCITY_Z] += 3.0 * scene.drops[0, :, 0]
+    scene.fluid.particles["velocity"][0, :, 0] -= 3.0 * scene.fluid.particles["position"][0, :, 1]  # it also turns
+    scene.fluid.particles["velocity"][0, :, 1] += 3.0 * scene.fluid.particles["position"][0, :, 0]
     run = free(strained, scene)
     p = run.water.particles
     sums = []
@@ -107,7 +107,7 @@ def test_a_strained_drop_becomes_the_ellipse_of_theory(strained):
     for _ in range(count):
         s += dt * s * s * (b * b - a * a) / (a * a + b * b)
         a, b = a * (1.0 + s * dt), b * (1.0 - s * dt)
-    start = drop(STRAIN).drops[0, :, :2]
+    start = drop(STRAIN).fluid.particles["position"][0]
     found = 0.1 * np.sqrt((place**2).mean(axis=0) / (start**2).mean(axis=0))  # root mean squares grow as the axes
     np.testing.assert_allclose(found, [a, b], rtol=0.02)
 
@@ -115,7 +115,9 @@ def test_a_strained_drop_becomes_the_ellipse_of_theory(strained):
 def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory(strained):
     """Small strains under −Ω² r: the axes swing at √2 Ω (Monaghan & Rafiee 2013), to 2 %."""
     scene = drop(0.2, pull=PULL)
-    scene.drops[..., EXCESS] = 0.5 * 10.0**2 * (0.01 - (scene.drops[..., :2] ** 2).sum(axis=-1)) / 20.0**2
+    scene.fluid.particles["excess"] = (
+        0.5 * 10.0**2 * (0.01 - (scene.fluid.particles["position"] ** 2).sum(axis=-1)) / 20.0**2
+    )
     run, wide, time = again(strained, scene), [], []
     for _ in range(60):
         run.advance(max(1, round(0.005 / run.dt)))

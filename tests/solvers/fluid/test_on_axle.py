@@ -8,7 +8,6 @@ import pytest
 from scipy.linalg import eigh
 from scipy.optimize import least_squares
 
-from solvers.fluid.given import VELOCITY_Y
 from solvers.motion.axle import Axle
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -55,7 +54,7 @@ def test_water_and_tank_keep_their_angular_momentum(run):
     """Without gravity that of both together about the axle, to rounding, as water hits the walls."""
     axle = Axle((0.05, 0.3), 0.1, 0.0)
     scene = scene_of(axle, gravity=0.0)
-    scene.drops[0, :, VELOCITY_Y] = 0.5
+    scene.fluid.particles["velocity"][0, :, 0] = 0.5
     start = sum(turning(hung(run, scene)))
     given = []
     for _ in range(4):
@@ -112,7 +111,9 @@ def test_water_that_is_held_is_a_rigid_weight(run):
     run.observe()
     run.advance(round(0.5 / run.dt))
     row = run.observe()
-    weight = 1000.0 * GRAVITY * WIDE * DEEP * THICK * (1.0 + 0.5 * GRAVITY * DEEP / run.scene.water.sound_speed**2)
+    weight = (
+        1000.0 * GRAVITY * WIDE * DEEP * THICK * (1.0 + 0.5 * GRAVITY * DEEP / run.scene.fluid.water.sound_speed**2)
+    )
     assert row["axle_moment"][0] == pytest.approx(0.05 * weight, rel=1e-3)
     assert row["wall_force"][0, 1] == pytest.approx(-weight, rel=1e-3)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from solvers.fluid.checks import refuse_reduced
-from solvers.fluid.given import GAS, VELOCITY_Y, VELOCITY_Z, Gauge
+from solvers.fluid.given import Gauge
 from solvers.fluid.phases.reduced import Reduced
 from solvers.machine.errors import Unavailable
 from solvers.motion.harmonic import Sway
@@ -30,9 +30,9 @@ def scene(amplitude: float = 0.0, **of_air) -> Scene:
 def stirred(amplitude: float = 0.0) -> Scene:
     """Both set in motion at random."""
     made = scene(amplitude)
-    random, drops = np.random.default_rng(1), made.drops
-    drops[..., :2] += 0.1 * made.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
-    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    random, drops = np.random.default_rng(1), made.fluid.particles
+    drops["position"] += 0.1 * made.fluid.water.spacing * random.uniform(-1.0, 1.0, drops["position"].shape)
+    drops["velocity"] = 0.2 * random.uniform(-1.0, 1.0, drops["position"].shape)
     return made
 
 
@@ -106,7 +106,7 @@ def test_momentum_and_energy_in_a_tank_that_sways(pool):
 
 def test_the_background_bears_less():
     """The difference of both weights over one smoothing length, not the whole weight of the upper fluid."""
-    made = scene().water
+    made = scene().fluid.water
     assert Reduced.hanging(made, GRAVITY, 1.0) == pytest.approx(500.0 * GRAVITY * made.length)
     whole = replace(made, air=replace(made.air, reduced=None))
     assert Reduced.hanging(whole, GRAVITY, 1.0) == pytest.approx(500.0 * GRAVITY)
@@ -116,10 +116,10 @@ def test_the_background_bears_less():
 def test_starts_at_rest_without_weight_above():
     """Under the reduced pressure the upper fluid has none at rest, the water that of half its weight."""
     made = scene()
-    drops, wet = made.drops[0], made.drops[0, :, GAS] < 0.5
-    assert (drops[~wet, 4] == 0.0).all()
-    share = 0.5 * GRAVITY * (DEPTH - drops[wet, 1]) / made.water.sound_speed**2
-    np.testing.assert_allclose(drops[wet, 4], share, rtol=1e-2)
+    drops, wet = made.fluid.particles[0], made.fluid.particles["gas"][0] < 0.5
+    assert (drops["excess"][~wet] == 0.0).all()
+    share = 0.5 * GRAVITY * (DEPTH - drops["position"][wet, 1]) / made.fluid.water.sound_speed**2
+    np.testing.assert_allclose(drops["excess"][wet], share, rtol=1e-2)
 
 
 def test_what_does_not_go_with_it():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME, Water
+from solvers.fluid.given import Fluid, Water, particles
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.water import box
@@ -16,11 +16,11 @@ def patch(shifting: str) -> Scene:
     spacing = 1.0 / ACROSS
     line = (np.arange(ACROSS) + 0.5) * spacing - 0.5
     place = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
-    drops = np.zeros((1, len(place), 6))
-    drops[0, :, :2], drops[..., VOLUME] = place + np.array([0.0, 2.0]), spacing**2
-    drops[0, :, VELOCITY_Y], drops[0, :, VELOCITY_Z] = FORWARD - RATE * place[:, 1], RATE * place[:, 0]
+    drops = particles(1, len(place))
+    drops["position"][0], drops["volume"] = place + np.array([0.0, 2.0]), spacing**2
+    drops["velocity"][0, :, 0], drops["velocity"][0, :, 1] = FORWARD - RATE * place[:, 1], RATE * place[:, 0]
     water = Water(spacing, 10.0, walls=False, shifting=shifting, speed=1.0)
-    return Scene(radius=np.zeros((1, 0)), outline=box(4.0, 4.0), water=water, drops=drops, gravity=0.0)
+    return Scene(radius=np.zeros((1, 0)), outline=box(4.0, 4.0), fluid=Fluid(water, drops), gravity=0.0)
 
 
 def kept(run: Simulation) -> tuple[np.ndarray, float]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, VOLUME, Water
+from solvers.fluid.given import Fluid, Water
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -24,10 +24,10 @@ def ringing(**models) -> Scene:
     """Water at rest whose density has the mode on top, its particles as heavy as before plus the mode's share."""
     water = Water(DEPTH / ROWS, SOUND, **models)
     drops = at_rest(OUTLINE, DEPTH, water, G)[None].copy()
-    mass = (1.0 + drops[..., EXCESS]) * drops[..., VOLUME]
-    drops[..., EXCESS] += SHARE * shape(drops[..., 1])
-    drops[..., VOLUME] = mass / (1.0 + drops[..., EXCESS])
-    return Scene(radius=np.zeros((1, 0)), outline=OUTLINE, water=water, drops=drops, gravity=G)
+    mass = (1.0 + drops["excess"]) * drops["volume"]
+    drops["excess"] += SHARE * shape(drops["position"][..., 1])
+    drops["volume"] = mass / (1.0 + drops["excess"])
+    return Scene(radius=np.zeros((1, 0)), outline=OUTLINE, fluid=Fluid(water, drops), gravity=G)
 
 
 def swings(scene: Scene) -> tuple[float, float]:

@@ -5,7 +5,7 @@ import pytest
 import taichi as ti
 
 from solvers.fluid.checks import residual
-from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Gauge, Level
+from solvers.fluid.given import Gauge, Level
 from solvers.fluid.surface.fullness import PACKED, RAMP
 from solvers.machine.errors import BadState
 from solvers.machine.state import without_worlds
@@ -24,9 +24,9 @@ UNTOLD = {name: () for name in TOLD}  # of which the course of the water does no
 def disturbed(seed: int = 1, **changes):
     """A still tank whose particles were displaced and set in motion at random."""
     scene = still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD | changes)
-    random, drops = np.random.default_rng(seed), scene.drops
-    drops[..., :2] += 0.1 * scene.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
-    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    random, drops = np.random.default_rng(seed), scene.fluid.particles
+    drops["position"] += 0.1 * scene.fluid.water.spacing * random.uniform(-1.0, 1.0, drops["position"].shape)
+    drops["velocity"] = 0.2 * random.uniform(-1.0, 1.0, drops["position"].shape)
     return scene
 
 
@@ -153,8 +153,8 @@ def test_tanks_of_other_sizes_share_compiled_kernels(run):
 def test_water_with_voids_loses_its_pressure(run):
     """A lattice that is higher by a fifth bears none where it is not packed; its energy is accounted for."""
     scene = disturbed()
-    scene.drops[0, :, 1] *= 1.2
-    scene.drops[0, :, EXCESS] = 0.01
+    scene.fluid.particles["position"][0, :, 1] *= 1.2
+    scene.fluid.particles["excess"][0] = 0.01
     again(run, scene)
     start = run.observe()
     run.advance(1)
@@ -171,7 +171,7 @@ def test_water_with_voids_loses_its_pressure(run):
 def test_water_that_is_packed_too_close_takes_its_room_again(run):
     """Water at rest whose particles are 3 % too heavy for their room rises by as much, but for what its surface is."""
     scene = still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD)
-    scene.drops[..., VOLUME] *= 1.03
+    scene.fluid.particles["volume"] *= 1.03
     again(run, scene)
     start = run.observe()
     run.advance(round(2.5 / (run.water.constants.numbers["keeping"] * run.dt)))
@@ -186,12 +186,13 @@ def test_water_that_is_packed_too_close_takes_its_room_again(run):
 def test_a_drop_alone_falls_without_pressure(run):
     """A pressed drop high above the water is relieved within a few h/c0 and falls as a stone does."""
     scene = disturbed()
-    scene.drops[0, -1] = [0.0, 0.5, 0.0, 0.0, 0.02, scene.drops[0, -1, VOLUME]]
+    drop = scene.fluid.particles[0, -1]
+    drop["position"], drop["velocity"], drop["excess"] = (0.0, 0.5), 0.0, 0.02
     again(run, scene)
     run.advance(20)
     places, speeds, s, *_ = held(run)
     time = 20 * run.dt
-    assert 0.0 <= s[-1] < 1e-4 * scene.drops[0, -1, EXCESS]
+    assert 0.0 <= s[-1] < 1e-4 * scene.fluid.particles["excess"][0, -1]
     assert places[-1] == pytest.approx([0.0, 0.5 - 0.5 * GRAVITY * time**2], abs=GRAVITY * time * run.dt)
     assert speeds[-1] == pytest.approx([0.0, -GRAVITY * time], abs=GRAVITY * run.dt)
 
@@ -237,7 +238,7 @@ def test_water_at_rest_weighs_on_the_floor_and_its_gauges(run):
 def test_the_watch_stops_water_that_is_not_sound(run, trouble):
     """Within a step, or at the next look: one sentence that has the time."""
     again(run, still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD))
-    p, sound = run.water.particles, run.scene.water.sound_speed
+    p, sound = run.water.particles, run.scene.fluid.water.sound_speed
     run.observe()
     run.advance(10)
     run.observe()
@@ -245,7 +246,7 @@ def test_the_watch_stops_water_that_is_not_sound(run, trouble):
         if trouble == "not a number":
             upset(run, 100, p.velocity, (np.nan, 0.0))
         elif trouble == "left the tank":
-            upset(run, 100, p.place, (0.5 * WIDTH + 2.0 * run.scene.water.spacing, 0.1))
+            upset(run, 100, p.place, (0.5 * WIDTH + 2.0 * run.scene.fluid.water.spacing, 0.1))
         elif trouble == "Mach":
             upset(run, 100, p.velocity, (0.51 * sound, 0.0))
         else:
@@ -267,10 +268,10 @@ def come_through(deep: float) -> Scene:
     floor = np.stack([ways - 0.5 * WIDTH + 5.0 * spacing, np.full(4, -out)], axis=1)[:3]
     corners = np.array([[-0.5 * WIDTH - out, -out], [-0.5 * WIDTH - out, HEIGHT + out]])
     scene = still(WIDTH, HEIGHT, DEPTH, ROWS, gravity=0.0, **TOLD)
-    drops = scene.drops[0]
-    drops[:, EXCESS], drops[:, 1] = 0.0, drops[:, 1] + 0.5 * (HEIGHT - DEPTH)
-    drops[:, 0] *= 0.6
-    drops[:9, :2] = np.concatenate([right, floor, corners])
+    drops = scene.fluid.particles[0]
+    drops["excess"], drops["position"][:, 1] = 0.0, drops["position"][:, 1] + 0.5 * (HEIGHT - DEPTH)
+    drops["position"][:, 0] *= 0.6
+    drops["position"][:9] = np.concatenate([right, floor, corners])
     return scene
 
 
@@ -303,7 +304,7 @@ def test_other_ways_of_running_give_the_same_water(course, changes):
     scenes = [disturbed(seed, **UNTOLD | changes) for seed in ((4, 3) if "f32" in changes.values() else (3,))]
     other = Simulation(Scene.joined(scenes), threads=1 + len(units), arch="cpu", **units)
     other.advance(60)
-    places, spacing, precision = other.snapshot()["water_place"], other.scene.water.spacing, other.scene.precision
+    places, spacing, precision = other.snapshot()["water_place"], other.scene.fluid.water.spacing, other.scene.precision
     place = places[-1]
     assert len(places) == 1 or np.abs(places[0] - place).max() > 0.05 * spacing
     other.close()

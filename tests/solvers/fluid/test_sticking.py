@@ -21,8 +21,8 @@ def rolled() -> Scene:
 def stirred() -> Scene:
     """A tank at rest in whose water a box turns to and fro."""
     parts = (Body(SQUARE, closed=True, motions=(Roll(0.3, 1.0, centre=(0.0, 0.11)),)),)
-    drops = still(0.6, 0.6, 0.3, 12).drops
-    free = clear_of(drops[0, :, :2], parts, 0.025)
+    drops = still(0.6, 0.6, 0.3, 12).fluid.particles
+    free = clear_of(drops["position"][0], parts, 0.025)
     return still(0.6, 0.6, 0.3, 12, parts=parts, drops=drops[:, free], **STICKY)
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Air, Level, Water
+from solvers.fluid.given import Air, Fluid, Level, Water
 from solvers.fluid.timestep import soft_limit, steps_of_water, stiff_step
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -25,16 +25,16 @@ def scene() -> Scene:
     levels = (Level(0.0),)
     made = both(WIDTH, HEIGHT, DEPTH, ROWS, sound_speed=SOUND, levels=levels, air=air, background=BACKGROUND)
     step = min(made.longest_step(1.0), soft_limit(made, 1.0) / STRIDE)
-    return replace(made, step=step, soft_stride=STRIDE)
+    return replace(made, step=step, fluid=replace(made.fluid, soft_stride=STRIDE))
 
 
 def stirred() -> Scene:
     """Both phases set in motion at random, with air that is squeezed and drawn out, up to where it resists no more."""
     made, random = scene(), np.random.default_rng(3)
-    drops = made.drops
-    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.1 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
-    drops[..., EXCESS] += np.where(drops[..., GAS] > 0.5, random.uniform(-0.1, 0.1, drops.shape[:2]), 0.0)
-    drops[0, -3:, EXCESS] = -0.5, 0.9, 3.0
+    drops = made.fluid.particles
+    drops["velocity"] = 0.1 * random.uniform(-1.0, 1.0, drops["position"].shape)
+    drops["excess"] += np.where(drops["gas"] > 0.5, random.uniform(-0.1, 0.1, drops.shape), 0.0)
+    drops["excess"][0, -3:] = -0.5, 0.9, 3.0
     return made
 
 
@@ -62,7 +62,7 @@ def test_pressure_mass_momentum_and_energy_go_on(made):
     run.water.change()
     after, later = run.observe(), run.snapshot()
     stiff = run.water.particles.read(run.water.particles.excess)[0]
-    gas = run.scene.drops[0, :, GAS] > 0.5
+    gas = run.scene.fluid.particles["gas"][0] > 0.5
     scale = np.abs(state["air_pressure"]).max()
     np.testing.assert_allclose(later["air_pressure"], state["air_pressure"], atol=1e-12 * scale)
     np.testing.assert_array_equal(later["water_pressure"], state["water_pressure"])
@@ -80,7 +80,7 @@ def test_pressure_mass_momentum_and_energy_go_on(made):
 def test_a_still_tank_stays_still(made):
     """Water and air at rest before and after: the surface keeps its place, the air its pressure and its rest."""
     run = again(made, scene())
-    due, spacing = stiff_step(run.scene), run.scene.water.spacing
+    due, spacing = stiff_step(run.scene), run.scene.fluid.water.spacing
     looks = []
     for _ in range(3):  # the last two under stiff air
         run.advance(due)
@@ -142,7 +142,7 @@ def test_nothing_changes_while_the_clock_has_not_started(made):
 
 def test_air_that_stays_as_it_is_has_steps_of_one_length():
     made = both(WIDTH, HEIGHT, DEPTH, ROWS)
-    assert made.water.softened is made.water
+    assert made.fluid.water.softened is made.fluid.water
     assert steps_of_water(made, 100) == 100
 
 
@@ -154,10 +154,11 @@ def test_momentum_is_kept_over_the_moment():
     places = (np.indices((24, 24)).reshape(2, -1).T + 0.5) / 24.0
     places[:, 0] -= 0.5
     drops = filled(places, (places[:, 1] > 0.5).astype(float), 1.0 / 576.0)
-    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.1 * np.random.default_rng(5).uniform(-1.0, 1.0, drops[..., :2].shape)
-    given = {"outline": box(1.0, 1.0), "gravity": 0.0, "water": water, "drops": drops}
+    drops["velocity"] = 0.1 * np.random.default_rng(5).uniform(-1.0, 1.0, drops["position"].shape)
+    given = {"outline": box(1.0, 1.0), "gravity": 0.0, "fluid": Fluid(water, drops)}
     made = Scene(np.zeros((1, 0)), **given)
-    made = replace(made, step=min(made.longest_step(1.0), soft_limit(made, 1.0) / STRIDE), soft_stride=STRIDE)
+    made.fluid = replace(made.fluid, soft_stride=STRIDE)
+    made.step = min(made.longest_step(1.0), soft_limit(made, 1.0) / STRIDE)
     run = Simulation(made, threads=1, arch="cpu")
     p = run.water.particles
 

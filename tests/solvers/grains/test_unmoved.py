@@ -60,7 +60,7 @@ def test_grains_do_not_answer_for_water_that_stopped_a_world():
     with pytest.raises(BadState, match="a grain moves at"):
         grains.refuse(0, 0.0, run.dt)
     grains.scene = replace(run.scene)
-    grains.scene.water = object()
+    grains.scene.fluid.water = object()
     grains.refuse(0, 0.0, run.dt)
     with pytest.raises(BadState, match="a grain moves at"):
         grains.refuse(0, 0.0, far)

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.given import VOLUME
 from solvers.fluid.start.packing import area_of
 from solvers.machine.errors import Unavailable
 from solvers.motion.staggered import growth, lagrange
@@ -139,7 +138,7 @@ def test_a_free_surface_takes_stability(model):
     exact = weight * (centre[0] * -np.cos(heel) - centre[1] * -np.sin(heel))
     rigid = weight * 0.5 * DEEP * np.sin(heel)
     assert exact - rigid == pytest.approx(1000.0 * GRAVITY * WIDE**3 / 12.0 * np.tan(heel), rel=0.01)
-    denser = 1.0 + GRAVITY * DEEP / scene.water.sound_speed**2 if model == "sph" else 1.0
+    denser = 1.0 + GRAVITY * DEEP / scene.fluid.water.sound_speed**2 if model == "sph" else 1.0
     assert moment - rigid == pytest.approx(denser * (exact - rigid), rel=0.008 if model == "sph" else 0.002)
 
 
@@ -177,7 +176,7 @@ def test_what_the_water_loses_the_ship_gains(run):
     run.advance(round(0.5 / run.dt))
     row = run.observe()
     angle, before = row["pose"][0, 2], momentum(run, row["pose"][0, 2])
-    mass, worst = 1000.0 * run.scene.drops[0, :, VOLUME].sum(), 0.0
+    mass, worst = 1000.0 * run.scene.fluid.particles["volume"][0].sum(), 0.0
     mass = float(run.water.particles.read(run.water.particles.mass)[0][0].sum())
     for _ in range(20):
         run.advance(1)
@@ -198,13 +197,14 @@ def test_tanks_one_behind_the_other():
     """Two halves of a tank in the same place of the plane act as the whole, and their waters do not meet."""
     whole = aboard(ship())
     half = Tank(whole.outline, 1.0, length=0.25 * LENGTH)
-    count = whole.drops.shape[1]
+    count = whole.fluid.particles.shape[1]
     halves = replace(
         whole,
         length=0.25 * LENGTH,
         more_tanks=(half,),
-        drops=np.concatenate([whole.drops, whole.drops], axis=1),
-        water=replace(whole.water, fills=(count, count)),
+        fluid=replace(
+            whole.fluid, particles=np.concatenate([whole.fluid.particles] * 2, axis=1), in_tanks=(count, count)
+        ),
     )
     (_, one), (_, two) = roll(whole, 1.0), roll(halves, 1.0)
     assert np.ptp(one) > 0.02
@@ -214,7 +214,7 @@ def test_tanks_one_behind_the_other():
 def test_grains_and_water_share_no_tank():
     """A tank with both is refused in one sentence."""
     drops = lattice(WIDE, DEEP, DEEP / ROWS, 10.0)
-    assert area_of(box(WIDE, DEEP)) == pytest.approx(drops[0, :, VOLUME].sum())
+    assert area_of(box(WIDE, DEEP)) == pytest.approx(drops["volume"][0].sum())
     from solvers.fluid.checks import refuse_scene
 
     with pytest.raises(Unavailable, match="give them tanks of their own"):

@@ -34,7 +34,7 @@ def swayed(model: str, rows: int) -> Scene:
     scene = replace(
         scene,
         radius=np.zeros((worlds, 0)),
-        drops=np.tile(scene.drops, (worlds, 1, 1)),
+        fluid=replace(scene.fluid, particles=np.tile(scene.fluid.particles, (worlds, 1))),
         motions=moved,
         soft_start=RAMP,
     )

@@ -14,7 +14,8 @@ PACE, LASTS, EVERY = 8, 1.5, 0.02  # s
 
 def paced(step: float, pace: int) -> Simulation:
     """A barge with water whose steps are `pace` of hers of `step` (s)."""
-    return Simulation(replace(aboard(ship()), step=step, water_pace=pace), threads=1, arch="cpu")
+    made = aboard(ship())
+    return Simulation(replace(made, step=step, fluid=replace(made.fluid, pace=pace)), threads=1, arch="cpu")
 
 
 @pytest.fixture(scope="module")

@@ -101,7 +101,7 @@ def rounding(precision: str, case: Case, step: float) -> tuple[float, float]:
     of_place, of_force = (float(np.finfo(kind).eps) for kind in KINDS[precision])
     pushed = 0.5 * NEIGHBOURS * of_force * PULLED * DEPTH / (2.0 * case.spacing)  # of g, in the mean over depths
     drifted = GRAVITY * pushed * (STEPS * step) ** 2  # m, ½ a t² of the deepest
-    rounded = STEPS * of_place * float(np.abs(case.drops[:, :2]).max())
+    rounded = STEPS * of_place * float(np.abs(case.drops["position"]).max())
     return (rounded + drifted) / case.spacing, pushed
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from lab.preset.outline import rectangle
 from lab.studies.bench.peers.pool import Pool
-from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
+from solvers.fluid.given import Fluid, Water, particles
 from solvers.fluid.start.rest import hydrostatic_excess
 from solvers.scene import Scene
 
@@ -19,7 +19,7 @@ TANK, HEIGHT, COLUMN, HIGH = 1.61, 0.6, 0.6, 0.3  # m
 
 @dataclass(frozen=True)
 class Case:
-    """Particles `drops` (n, 6) of `solvers.scene.Scene` in a rectangular tank, their spacing and speed of sound."""
+    """Particles `drops` (n,) as they start in a rectangular tank, their spacing and speed of sound."""
 
     drops: np.ndarray
     width: float
@@ -36,17 +36,17 @@ class Case:
         """The scene of the lab in as many equal worlds, its defaults changed by `of_water`."""
         outline = np.array(rectangle(self.width, self.height))
         water = Water(**{"spacing": self.spacing, "sound_speed": self.sound_speed, "density": DENSITY} | of_water)
-        how = {"precision": precision, "schedule": schedule, "drops": np.tile(self.drops, (worlds, 1, 1))}
-        return Scene(radius=np.zeros((worlds, 0)), outline=outline, water=water, **how)
+        fluid, how = Fluid(water, np.tile(self.drops, (worlds, 1))), {"precision": precision, "schedule": schedule}
+        return Scene(radius=np.zeros((worlds, 0)), outline=outline, fluid=fluid, **how)
 
     def pool(self, seconds: float, every: float, threads: int = 1) -> Pool:
         """The same for a peer: its pressures are those of the linear equation of state."""
-        s = self.drops[:, EXCESS]
+        s = self.drops["excess"]
         return Pool(
-            position=self.drops[:, [Y, Z]],
-            velocity=self.drops[:, [VELOCITY_Y, VELOCITY_Z]],
+            position=self.drops["position"],
+            velocity=self.drops["velocity"],
             pressure=DENSITY * self.sound_speed**2 * s,
-            mass=DENSITY * (1.0 + s) * self.drops[:, VOLUME],
+            mass=DENSITY * (1.0 + s) * self.drops["volume"],
             width=self.width,
             height=self.height,
             spacing=self.spacing,
@@ -63,8 +63,8 @@ def gentle(rows: int, steep: float = STEEP, mach: float = 10.0, state: str = "li
     c0 = mach √(gH); the water bears its own weight by the equation of `state` of that name.
     """
     drops = _block(GENTLE, DEPTH, rows, mach, -0.5 * GENTLE, state)
-    place = drops[:, [Y, Z]]
-    drops[:, [VELOCITY_Y, VELOCITY_Z]] = steep * DEPTH * frequency() * mode(place)
+    place = drops["position"]
+    drops["velocity"] = steep * DEPTH * frequency() * mode(place)
     return Case(drops, GENTLE, LID, DEPTH / rows, mach * np.sqrt(GRAVITY * DEPTH))
 
 
@@ -94,7 +94,7 @@ def _block(width: float, depth: float, rows: int, mach: float, left: float, stat
     y = left + (np.arange(round(width / spacing)) + 0.5) * spacing
     z = (np.arange(rows) + 0.5) * spacing
     grid = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
-    drops = np.zeros((len(grid), 6))
-    drops[:, [Y, Z]], drops[:, VOLUME] = grid, spacing**2
-    drops[:, EXCESS] = hydrostatic_excess(depth - grid[:, 1], GRAVITY, sound, state)
+    drops = particles(len(grid))
+    drops["position"], drops["volume"] = grid, spacing**2
+    drops["excess"] = hydrostatic_excess(depth - grid[:, 1], GRAVITY, sound, state)
     return drops

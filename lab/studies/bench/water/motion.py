@@ -8,7 +8,6 @@ import numpy as np
 from lab.studies.bench.remembered import remembered
 from lab.studies.bench.water.cases import DENSITY, GRAVITY, HIGH, Case
 from lab.studies.bench.water.workers import Worker
-from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Y, Z
 
 LATER = 6.0  # t √(g/H): the water has run up the far wall and falls back
 
@@ -24,8 +23,8 @@ def _moved(column: Case) -> dict[str, np.ndarray]:
     frame = worker.frames([LATER * np.sqrt(HIGH / GRAVITY)])[0]
     worker.close()
     drops = column.drops.copy()
-    mass = (1.0 + drops[:, EXCESS]) * drops[:, VOLUME]
-    drops[:, [Y, Z]], drops[:, [VELOCITY_Y, VELOCITY_Z]] = frame.position, frame.velocity
-    drops[:, EXCESS] = frame.pressure / (DENSITY * column.sound_speed**2)
-    drops[:, VOLUME] = mass / (1.0 + drops[:, EXCESS])
+    mass = (1.0 + drops["excess"]) * drops["volume"]
+    drops["position"], drops["velocity"] = frame.position, frame.velocity
+    drops["excess"] = frame.pressure / (DENSITY * column.sound_speed**2)
+    drops["volume"] = mass / (1.0 + drops["excess"])
     return {"drops": drops}

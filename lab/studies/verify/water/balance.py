@@ -176,13 +176,13 @@ def held(_: bool) -> Found:
     set_going(drops, lambda place: np.zeros_like(place))
     for outside in (True, False):
         turn, start = turning(HELD if outside else 0.0), drops.copy()
-        start[0, :, :2] = drops[0, :, :2] @ turn.T
+        start["position"][0] = drops["position"][0] @ turn.T
         motions = () if outside else (Tilt(rate=1.0, angle=HELD),)
         with simulated(scene(water, start, upright @ turn.T, motions=[motions], step=STEP)) as run:
             run.origin = 0.0 if outside else LONG_TILTED
             run.advance(STEPS)
             places.append(run.snapshot()["water_place"][0] @ turn)
-    moved = 1e3 * np.linalg.norm(places[0] - drops[0, :, :2], axis=1).max()
+    moved = 1e3 * np.linalg.norm(places[0] - drops["position"][0], axis=1).max()
     error = np.abs(places[0] - places[1]).max()
     line = Line.off("places", "the turned outline", error, 1e-9, "rounding, grown by the water's motion", "m")
     return Found([line], notes=[f"Water that was level in the tank flows by up to {moved:.0f} mm."])

@@ -19,7 +19,7 @@ from lab.studies.verify.water.scenes import (
     simulated,
     swing,
 )
-from solvers.fluid.given import VOLUME, Pull, Water
+from solvers.fluid.given import Pull, Water
 from solvers.fluid.start.flow import stirred
 from solvers.fluid.start.packing import packed
 
@@ -67,7 +67,7 @@ def strained(count: int, strain: float, rate: float, sound: float, times: np.nda
         lambda r: stirred(r, strain, 0.0),
         lambda r: squeezed * (RADIUS**2 - (r**2).sum(axis=1)),
     )
-    drops[..., VOLUME] = packing.volume
+    drops["volume"] = packing.volume
     first, found = np.sqrt((place**2).mean(axis=0)), []
     with simulated(scene(water, drops, box(4.0, 4.0), 0.0)) as run:
         begun = run.observe()["water_total"][0]

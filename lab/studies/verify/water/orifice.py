@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 
 from lab.studies.case import Case, Found, Line
 from lab.studies.verify.water.scenes import G, errors_note, looks, scene, seen, simulated
-from solvers.fluid.given import VOLUME, Water
+from solvers.fluid.given import Water
 from solvers.fluid.start.rest import at_rest
 
 SECTION = "Water: outflow"
@@ -106,7 +106,7 @@ def emptied(across: int) -> Outflow:
     half = 0.5 * WIDTH
     vessel = np.array([(0.0, 0.0), (half, 0.0), (half, FULL + AIR), (0.0, FULL + AIR)])
     drops = at_rest(vessel, FULL, water, G)[None]
-    volume, found = drops[0, :, VOLUME], []
+    volume, found = drops["volume"][0], []
     with simulated(scene(water, drops, outline(), open_edges=OPEN)) as run:
         for time in looks(run, np.arange(EVERY, LONGEST, EVERY)):
             place, velocity = seen(run)

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from lab.preset.outline import rectangle
 from lab.studies.case import Line
-from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
+from solvers.fluid.given import Fluid, Water, particles
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.air import air_above, with_air
@@ -44,23 +44,23 @@ def grid(width: float, height: float, spacing: float) -> np.ndarray:
 
 
 def filled(place: np.ndarray, water: Water, velocity: Field, pressure: Field | None = None) -> np.ndarray:
-    """Drops (1, n, 6) of a `water` with a linear state at places on its lattice, from fields of m/s and Pa."""
-    drops = np.zeros((1, len(place), 6))
-    drops[0, :, :2], drops[..., VOLUME] = place, water.spacing**2
+    """Drops (1, n) of a `water` with a linear state at places on its lattice, from fields of m/s and Pa."""
+    drops = particles(1, len(place))
+    drops["position"][0], drops["volume"] = place, water.spacing**2
     set_going(drops, velocity)
     if pressure is not None:
-        drops[0, :, EXCESS] = pressure(place) / (water.density * water.sound_speed**2)
+        drops["excess"][0] = pressure(place) / (water.density * water.sound_speed**2)
     return drops
 
 
 def set_going(drops: np.ndarray, velocity: Field) -> None:
-    """Give drops (1, n, 6) the velocities (m/s) of a field."""
-    drops[0, :, [VELOCITY_Y, VELOCITY_Z]] = velocity(drops[0, :, :2]).T
+    """Give drops (1, n) the velocities (m/s) of a field."""
+    drops["velocity"][0] = velocity(drops["position"][0])
 
 
 def scene(water: Water, drops: np.ndarray, outline: np.ndarray, gravity: float = G, **more) -> Scene:
     """A scene of water alone."""
-    return Scene(radius=np.zeros((1, 0)), outline=outline, water=water, drops=drops, gravity=gravity, **more)
+    return Scene(radius=np.zeros((1, 0)), outline=outline, fluid=Fluid(water, drops), gravity=gravity, **more)
 
 
 def resting(water: Water, outline: np.ndarray, depth: float, velocity: Field | None = None) -> Scene:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solvers.fluid.checks import residual
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Z, VOLUME, Air, Water, Y, Z
+from solvers.fluid.given import Air, Fluid, Water
 from solvers.fluid.phases.adiabatic import Adiabatic, background
 from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.rest import at_rest
@@ -29,7 +29,7 @@ def filled(region: np.ndarray | None = None, level: float = 0.15, **changes) -> 
     else:
         drops = with_air(at_rest(region, region[:, 1].max(), water, 0.0), air_round(outline, region, water, GRAVITY))
     given = {"outline": outline, "gravity": GRAVITY, "precision": "mixed"}
-    return Scene(np.zeros((1, 0)), **given, water=water, drops=drops[None], **changes)
+    return Scene(np.zeros((1, 0)), **given, fluid=Fluid(water, drops[None]), **changes)
 
 
 def course(scene: Scene, times: np.ndarray) -> list[dict[str, np.ndarray]]:
@@ -70,15 +70,20 @@ def test_a_tank_that_is_turned_over():
 def test_a_bubble_of_four_spacings_rises():
     """A dozen particles of air, 60 mm deep: they come up to the air above, or near it, within a second."""
     scene = filled()
-    drops = scene.drops[0]
-    inside = (np.hypot(drops[:, Y], drops[:, Z] - 0.08) < 2.0 * SPACING) & (drops[:, GAS] < 0.5)
-    pressure = scene.water.density * SOUND**2 * drops[inside, EXCESS]
-    share = pressure / (scene.water.air.density * SOUND**2)
-    drops[inside, GAS], drops[inside, EXCESS] = 1.0, Adiabatic.excess(share)
-    drops[inside, VELOCITY_Z], drops[inside, VOLUME] = 0.0, SPACING**2
-    scene.drops = drops[np.argsort(drops[:, GAS], kind="stable")][None]
-    bubble = slice(int((scene.drops[0, :, GAS] < 0.5).sum()), None)
-    own = np.hypot(scene.drops[0, bubble, Y], scene.drops[0, bubble, Z] - 0.08) < 2.0 * SPACING
+    drops = scene.fluid.particles[0]
+    inside = (np.hypot(drops["position"][:, 0], drops["position"][:, 1] - 0.08) < 2.0 * SPACING) & (drops["gas"] < 0.5)
+    pressure = scene.fluid.water.density * SOUND**2 * drops["excess"][inside]
+    share = pressure / (scene.fluid.water.air.density * SOUND**2)
+    drops["gas"][inside], drops["excess"][inside] = 1.0, Adiabatic.excess(share)
+    drops["velocity"][inside, 1], drops["volume"][inside] = 0.0, SPACING**2
+    scene.fluid = replace(scene.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None])
+    bubble = slice(int((scene.fluid.particles["gas"][0] < 0.5).sum()), None)
+    own = (
+        np.hypot(
+            scene.fluid.particles["position"][0, bubble, 0], scene.fluid.particles["position"][0, bubble, 1] - 0.08
+        )
+        < 2.0 * SPACING
+    )
     rows = course(scene, np.arange(1, 11) * 0.1)
     assert rows[-1]["air_place"][0, own, 1].mean() > 0.13
 

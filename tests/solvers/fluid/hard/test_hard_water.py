@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solvers.fluid.checks import residual
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME, Water
+from solvers.fluid.given import Fluid, Water
 from solvers.fluid.start.rest import at_rest
 from solvers.motion import Roll, Sway, Tilt
 from solvers.scene import Scene
@@ -22,7 +22,7 @@ def tank_of(outline: np.ndarray, level: float, rows: int, within: np.ndarray | N
     of_water = {name: changes.pop(name) for name in list(changes) if name in Water.__dataclass_fields__}
     water = Water(**{"spacing": spacing, "sound_speed": sound} | of_water)
     drops = at_rest(outline if within is None else within, level, water, GRAVITY)[None]
-    return Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, water=water, drops=drops, **changes)
+    return Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, fluid=Fluid(water, drops), **changes)
 
 
 def course(scene: Scene, times: Sequence[float]) -> list[dict[str, np.ndarray]]:
@@ -50,17 +50,21 @@ def unaccounted(rows: list[dict[str, np.ndarray]]) -> np.ndarray:
 def level_of(row: dict[str, np.ndarray], scene: Scene, left: float, right: float) -> float:
     """Mean level (m) of the water between two places (m), by the volume there."""
     here = (row["water_place"][0, :, 0] > left) & (row["water_place"][0, :, 0] < right)
-    return float(scene.drops[0, here, VOLUME].sum() / (right - left))
+    return float(scene.fluid.particles["volume"][0, here].sum() / (right - left))
 
 
 def test_a_wave_of_a_fifth_of_the_shallow_speed():
     """Ten times the largest speed of the wave by which frequencies are verified: it steepens, and may break."""
     width, depth = 0.6, 0.15
     scene = tank_of(box(width, 0.4), depth, 20)
-    place, wavenumber = scene.drops[0, :, :2], np.pi / width
+    place, wavenumber = scene.fluid.particles["position"][0], np.pi / width
     push = 0.2 * np.sqrt(GRAVITY * depth) / np.sinh(wavenumber * depth)
-    scene.drops[0, :, VELOCITY_Y] = push * np.cosh(wavenumber * place[:, 1]) * np.cos(wavenumber * place[:, 0])
-    scene.drops[0, :, VELOCITY_Z] = push * np.sinh(wavenumber * place[:, 1]) * np.sin(wavenumber * place[:, 0])
+    scene.fluid.particles["velocity"][0, :, 0] = (
+        push * np.cosh(wavenumber * place[:, 1]) * np.cos(wavenumber * place[:, 0])
+    )
+    scene.fluid.particles["velocity"][0, :, 1] = (
+        push * np.sinh(wavenumber * place[:, 1]) * np.sin(wavenumber * place[:, 0])
+    )
     rows = course(scene, np.arange(1, 21) * 0.5)
     assert np.abs(unaccounted(rows)).max() < 0.05
     assert rows[-1]["water_kinetic"][0] < 0.5 * rows[0]["water_kinetic"][0]
@@ -85,8 +89,8 @@ def test_a_jet_through_a_slot_of_four_spacings_levels_two_basins():
     left, right = (
         np.array([level_of(row, scene, *sides) for row in looks[1:]]) for sides in ((-0.3, -0.05), (0.05, 0.3))
     )
-    assert right[0] > 0.0 and left[0] < level - scene.water.spacing
-    assert abs(left[-1] - right[-1]) < 1.5 * scene.water.spacing
+    assert right[0] > 0.0 and left[0] < level - scene.fluid.water.spacing
+    assert abs(left[-1] - right[-1]) < 1.5 * scene.fluid.water.spacing
     assert np.abs(unaccounted(looks)).max() < 0.05
 
 
@@ -99,12 +103,12 @@ def test_a_drop_falls_on_a_dry_floor():
     spacing, radius, height = 4e-3, 0.05, 0.35
     water = Water(spacing, 20.0 * np.sqrt(2.0 * GRAVITY * height))
     square = at_rest(box(2.0 * radius, 1.0), 2.0 * radius, water, 0.0)
-    drop = square[np.hypot(square[:, 0], square[:, 1] - radius) < radius]
-    drop[:, 1] += height - radius
+    drop = square[np.linalg.norm(square["position"] - [0.0, radius], axis=1) < radius]
+    drop["position"][:, 1] += height - radius
     outline = box(0.6, 0.6)
-    scene = Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, water=water, drops=drop[None])
+    scene = Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, fluid=Fluid(water, drop[None]))
     rows = course(scene, np.arange(1, 81) * 0.1)
-    deep = drop[:, VOLUME].sum() / 0.6
+    deep = drop["volume"].sum() / 0.6
     assert rows[-1]["water_centre"][0, 1] == pytest.approx(0.5 * deep, abs=0.25 * spacing)
     assert rows[-1]["water_kinetic"][0] < 0.01 * rows[0]["water_total"][0]
     assert np.abs(unaccounted(rows)[-1]) < 0.01
@@ -118,7 +122,7 @@ def test_a_tank_is_turned_upside_down():
     tilt = Tilt(np.radians(60.0), np.radians(180.0), centre=(0.0, 0.2))
     scene = tank_of(box(width, height), depth, 20, motions=[(tilt,)])
     rows = course(scene, np.arange(1, 17) * 0.5)
-    assert rows[-1]["water_centre"][0, 1] == pytest.approx(height - 0.5 * depth, abs=scene.water.spacing)
+    assert rows[-1]["water_centre"][0, 1] == pytest.approx(height - 0.5 * depth, abs=scene.fluid.water.spacing)
     assert rows[-1]["water_kinetic"][0] < 0.02 * rows[0]["water_potential"][0]
     assert np.abs(unaccounted(rows)).max() < 0.05
 
@@ -137,8 +141,8 @@ def test_a_full_tank_sways_for_twenty_thousand_steps():
     fastest = 2.0 * np.pi * sway.frequency * sway.amplitude
     speeds = np.array([np.linalg.norm(row["water_velocity"][0], axis=1).max() for row in rows[1:]])
     assert speeds.max() < 0.2 * fastest
-    moved = np.linalg.norm(rows[-1]["water_place"][0] - scene.drops[0, :, :2], axis=1)
-    assert moved.max() < 2.0 * scene.water.spacing
+    moved = np.linalg.norm(rows[-1]["water_place"][0] - scene.fluid.particles["position"][0], axis=1)
+    assert moved.max() < 2.0 * scene.fluid.water.spacing
 
 
 def test_one_particle_of_depth():
@@ -151,7 +155,7 @@ def test_one_particle_of_depth():
     assert np.abs(rows[-1]["water_centre"][0, 0]) < 0.2
     assert rows[-1]["water_place"][0, :, 1].min() > 0.0
     assert np.abs(unaccounted(rows)).max() < 0.01
-    levels = np.array([2.0 * row["water_centre"][0, 1] for row in rows]) / scene.water.spacing
+    levels = np.array([2.0 * row["water_centre"][0, 1] for row in rows]) / scene.fluid.water.spacing
     assert levels[0] == pytest.approx(1.0, abs=0.01) and levels.min() > 0.7
 
 

@@ -19,7 +19,7 @@ from lab.studies.verify.water.scenes import (
     set_going,
     simulated,
 )
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
+from solvers.fluid.given import Air, Water, particles
 from solvers.fluid.phases.adiabatic import GAMMA
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -58,8 +58,8 @@ def rested(rows: int, duration: float) -> tuple[float, float, float]:
 
 def air_mass(run: Simulation) -> float:
     """Mass (kg) of the air in a slab of one metre."""
-    drops, air = run.scene.drops[0], run.scene.water.air
-    return float((air.density * (1.0 + drops[:, EXCESS]) * drops[:, VOLUME] * drops[:, GAS]).sum())
+    drops, air = run.scene.fluid.particles[0], run.scene.fluid.water.air
+    return float((air.density * (1.0 + drops["excess"]) * drops["volume"] * drops["gas"]).sum())
 
 
 def still(fast: bool) -> Found:
@@ -119,8 +119,8 @@ class Slug:
         place = grid(COLUMN, high, self.spacing) - [0.5 * COLUMN, 0.0]
         gas = (np.abs(place[:, 1] - 0.5 * high) > 0.5 * self.thick).astype(float)
         order = np.argsort(gas, kind="stable")
-        drops = np.zeros((1, len(place), 7))
-        drops[0, :, [Y, Z]], drops[0, :, GAS], drops[..., VOLUME] = place[order].T, gas[order], self.spacing**2
+        drops = particles(1, len(place))
+        drops["position"][0], drops["gas"][0], drops["volume"] = place[order], gas[order], self.spacing**2
         speed = np.sqrt(2.0 * quad(self.excess, 0.0, PRESSED)[0] / (water.density * self.thick))
         set_going(
             drops, lambda at: np.outer(speed * np.minimum(1.0, np.minimum(at[:, 1], high - at[:, 1]) / COLUMN), UP)
@@ -133,14 +133,14 @@ class Slug:
         The volumes follow from the water's centre and how much thinner it is, being squeezed itself.
         """
         made, found = self.made(), []
-        rate = np.sqrt(2.0 * GAMMA * self.at_rest / (COLUMN * made.water.density * self.thick))
-        upper = made.drops[0, made.drops[0, :, GAS] > 0.5, Z] > COLUMN
+        rate = np.sqrt(2.0 * GAMMA * self.at_rest / (COLUMN * made.fluid.water.density * self.thick))
+        upper = made.fluid.particles["position"][0, made.fluid.particles["gas"][0], 1] > COLUMN
         with simulated(made) as run:
             for _ in looks(run, np.linspace(1.2, 2.0, 17) / rate):
                 state = run.snapshot()
                 pressure = state["air_pressure"][0]
                 way = state["water_place"][0][:, 1].mean() - COLUMN - 0.5 * self.thick
-                thinner = state["water_pressure"][0].mean() / (1000.0 * made.water.sound_speed**2) * self.thick
+                thinner = state["water_pressure"][0].mean() / (1000.0 * made.fluid.water.sound_speed**2) * self.thick
                 shares = [1.0 + pressure[part].mean() / self.at_rest for part in (upper, ~upper)]
                 volumes = [1.0 - (side * way - 0.5 * thinner) / COLUMN for side in (1.0, -1.0)]
                 found.append((way, *(share * volume**GAMMA for share, volume in zip(shares, volumes, strict=True))))
@@ -174,9 +174,9 @@ def balance(_: bool) -> Found:
     place = grid(1.0, 1.0, 0.05) + np.array([-0.5, 0.0])
     gas = (np.abs(place[:, 1] - 0.5) > 0.25).astype(float)
     order = np.argsort(gas, kind="stable")
-    drops, random = np.zeros((1, len(place), 7)), np.random.default_rng(1)
-    drops[0, :, [Y, Z]] = (place[order] + 0.005 * random.uniform(-1.0, 1.0, place.shape)).T
-    drops[0, :, VOLUME], drops[0, :, GAS] = 0.05**2, gas[order]
+    drops, random = particles(1, len(place)), np.random.default_rng(1)
+    drops["position"][0] = place[order] + 0.005 * random.uniform(-1.0, 1.0, place.shape)
+    drops["volume"][0], drops["gas"][0] = 0.05**2, gas[order]
     set_going(drops, lambda where: 0.2 * random.uniform(-1.0, 1.0, where.shape))
     with simulated(scene(water, drops, box(1.0, 1.0), 0.0, step=1e-3)) as run:
         start = run.observe()

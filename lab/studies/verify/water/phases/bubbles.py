@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.water.scenes import bearing, box, looks, order_line, scene, simulated
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
+from solvers.fluid.given import Air, Water, particles
 from solvers.fluid.phases.adiabatic import Adiabatic
 from solvers.fluid.start.packing import packed
 from solvers.scene import Scene
@@ -35,25 +35,25 @@ def circle(radius: float, middle: tuple[float, float]) -> np.ndarray:
 
 
 def of_both(outline: np.ndarray, round_one: np.ndarray, water: Water, gas_inside: bool) -> np.ndarray:
-    """Drops (1, n, 7) at rest, without pressure: one fluid in a polygon, the other round it in the tank."""
+    """Drops (1, n) at rest, without pressure: one fluid in a polygon, the other round it in the tank."""
     top = outline[:, 1].max()
     inner = packed(round_one, round_one[:, 1].max(), water)
     outer = packed(outline, top, water, [round_one])
     parts = [(inner, gas_inside), (outer, not gas_inside)]
     found = []
     for packing, gas in sorted(parts, key=lambda part: part[1]):
-        drops = np.zeros((len(packing.points), 7))
-        drops[:, [Y, Z]], drops[:, VOLUME], drops[:, GAS] = packing.points, packing.volume, float(gas)
+        drops = particles(len(packing.points))
+        drops["position"], drops["volume"], drops["gas"] = packing.points, packing.volume, float(gas)
         found.append(drops)
     return np.concatenate(found)[None]
 
 
 def pressed(drops: np.ndarray, water: Water, pressure: np.ndarray) -> None:
-    """Give drops (1, n, 7) the densities at which they have pressures (n,) Pa."""
-    air, gas = water.air, drops[0, :, GAS] > 0.5
+    """Give drops (1, n) the densities at which they have pressures (n,) Pa."""
+    air, gas = water.air, drops["gas"][0] > 0.5
     of_water = pressure / (water.density * water.sound_speed**2)
     of_air = Adiabatic.excess(pressure / (air.density * air.sound_speed**2))
-    drops[0, :, EXCESS] = np.where(gas, of_air, of_water)
+    drops["excess"][0] = np.where(gas, of_air, of_water)
 
 
 def drop_at_rest(rows: int) -> float:
@@ -61,7 +61,7 @@ def drop_at_rest(rows: int) -> float:
     air = Air(100.0, STIFFER * DROP_SOUND, alpha=0.2, tension=TENSION)
     water = bearing(Water(SIDE / rows, DROP_SOUND, alpha=0.2, periodic=("y", "z"), air=air))
     drops = of_both(box(SIDE, SIDE), circle(RADIUS, (0.0, 0.5 * SIDE)), water, gas_inside=False)
-    inside = drops[0, :, GAS] < 0.5
+    inside = drops["gas"][0] < 0.5
     pressed(drops, water, np.where(inside, TENSION / RADIUS, 0.0))
     found = []
     with simulated(scene(water, drops, box(SIDE, SIDE), 0.0)) as run:
@@ -73,7 +73,7 @@ def drop_at_rest(rows: int) -> float:
 
 def jump(run: Simulation) -> float:
     """Mean pressure (Pa) within the drop less that round it, both well off the surface."""
-    state, reach = run.snapshot(), 1.5 * run.scene.water.length
+    state, reach = run.snapshot(), 1.5 * run.scene.fluid.water.length
     away = [np.hypot(*(state[f"{phase}_place"][0] - [0.0, 0.5 * SIDE]).T) for phase in ("water", "air")]
     inner = state["water_pressure"][0][away[0] < RADIUS - reach]
     return float(inner.mean() - state["air_pressure"][0][away[1] > RADIUS + reach].mean())
@@ -110,8 +110,8 @@ def bubble(rows: int) -> Scene:
     water = Water(spacing, SOUND, periodic=("y",), air=air, **sticky)
     outline = box(1.0, 2.0)
     drops = of_both(outline, circle(RADIUS, (0.0, 0.5)), water, gas_inside=True)
-    gas = drops[0, :, GAS] > 0.5
-    deep = 1000.0 * PULL * (2.0 - drops[0, :, Z])
+    gas = drops["gas"][0] > 0.5
+    deep = 1000.0 * PULL * (2.0 - drops["position"][0, :, 1])
     pressed(drops, water, deep + np.where(gas, TAUT / RADIUS, 0.0))
     return scene(water, drops, outline, PULL)
 
@@ -123,7 +123,9 @@ def risen(rows: int) -> Rise:
         for time in looks(run, np.arange(0.04, RISING + 0.01, 0.04)):
             state = run.snapshot()
             place, velocity = state["air_place"][0], state["air_velocity"][0]
-            found.append((time, place[:, 1].mean(), velocity[:, 1].mean(), roundness(place, run.scene.water.spacing)))
+            found.append(
+                (time, place[:, 1].mean(), velocity[:, 1].mean(), roundness(place, run.scene.fluid.water.spacing))
+            )
     return Rise(*np.array(found).T)
 
 

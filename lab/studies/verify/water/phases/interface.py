@@ -64,7 +64,7 @@ class Between:
         air = Air(self.density, sound, alpha, reduced=1.0 if self.reduced else None)
         water = Water(spacing, sound, alpha=alpha, speed=speed, air=air)
         made = of_both(bearing(water, 1.0), box(1.0, 2.0), 1.0)
-        set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
+        set_going(made.fluid.particles, lambda place: STEEP / K * self.rate * mode(place))
         return made
 
     def waved(self, rows: int) -> Swing:
