@@ -14,18 +14,17 @@ from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
-from solvers.matters import MATTERS
+from solvers.matters import made, setting_of
 from solvers.motion.carrier import make_carrier
 from solvers.motion.observer import Observer
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.vessel import Vessel
-from solvers.tank.setting import Setting
 from solvers.tank.walls import Walls
-from solvers.time import watch
+from solvers.time import kept, watch
 from solvers.time.changes import up_to_change
 from solvers.time.clock import Clock
-from solvers.time.schedules import SCHEDULES, check_cut, choose_schedule, moved, units_a_world
+from solvers.time.schedules import SCHEDULES, choose_schedule, moved, units_a_world
 from solvers.time.sequence import Sequence
 from solvers.time.settling import settle
 
@@ -81,13 +80,10 @@ class Simulation:
         self.arrays = arrays = State(scene.precision)
         self.walls = Walls(arrays, scene.tanks, scene.parts, scene.apart)
         self.carrier = make_carrier(arrays, scene, self.dt)
-        cut = self.units_a_world, self.schedule_name == "per-grain"
         pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
-        lists = self.skin, self.room, self.stretch, self.vectors, self.among
-        setting = Setting(arrays, worlds, *cut, self.walls, pieces, scene.shares, self.carrier, *lists)
-        made = (make(scene, setting) for make in MATTERS)
-        self.matters = {matter.name: matter for matter in made if matter}
-        matters = list(self.matters.values())
+        setting = setting_of(self, pieces)
+        matters = made(scene, setting)
+        self.matters = {matter.name: matter for matter in matters}
         loads = [matter.load for matter in matters]
         self.carrier.bear(loads)
         self.clock = Clock(arrays, setting.units(scene.radius.shape[1]))
@@ -127,12 +123,12 @@ class Simulation:
 
     def _make_room(self) -> None:
         """Double the capacity of the contact lists; all other state is kept."""
-        old, kept = self.arrays, self._of_matters()
+        old, of_matters = self.arrays, self._of_matters()
         self.room *= 2
         self._build()
         self.arrays.take_over(old)
         for matter in self.matters.values():
-            matter.restore(kept)
+            matter.restore(of_matters)
         old.release()
 
     def _of_matters(self) -> dict[str, np.ndarray]:
@@ -301,29 +297,23 @@ class Simulation:
 
     def state(self) -> dict[str, np.ndarray]:
         """The complete state, from which `restore` continues bit for bit."""
-        cut = self.units_a_world, list(SCHEDULES).index(self.schedule_name), self.vectors, self.among
-        own = {"numbers": np.array([self.steps, self.room, self.unkicked, self.observed, *cut])}
-        return own | {"origin": np.array(self.origin)} | self._of_matters() | self.means | self.arrays.read()
+        own = kept.state_of(self) | {"origin": np.array(self.origin)}
+        return own | self._of_matters() | self.means | self.arrays.read()
 
     def axes(self) -> dict[str, Axes]:
         """The axes of all that `state` tells, by its names."""
         world = Axis("world", self.scene.worlds)
         means = {name: (world, *(Axis("component", size) for size in m.shape[1:])) for name, m in self.means.items()}
-        own = {"numbers": (Axis("number", 8),), "origin": (), **means}
+        own = {**kept.axes_of(self), "origin": (), **means}
         own |= {name: axes for matter in self.matters.values() for name, axes in matter.axes().items()}
         return own | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned of the same scene, on whatever processor. Raises ValueError for any other."""
-        self.steps, room, self.unkicked, self.observed, *cut = (int(number) for number in state["numbers"])
-        units, schedule, vectors, among = (*cut, self.vectors, self.among)[:4]  # older states lack the last
-        vectors = wide.told_of_outlines(vectors) if self.scene.shapes else vectors
-        check_cut(units, schedule, vectors, moved(self.scene))
+        anew = kept.take(self, state)
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
-        if (room, units, vectors, among) != (self.room, self.units_a_world, self.vectors, self.among):
+        if anew:
             self.arrays.release()
-            self.room, self.units_a_world, self.vectors, self.among = room, units, vectors, among
-            self.schedule_name = list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)
         for matter in self.matters.values():

@@ -48,8 +48,7 @@ class WaterMatter(Matter):
         fluid: Fluid = scene.fluid.softened
         self.scene, self.fluid, self.water = scene, fluid, (water := fluid.water)
         arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], fluid.count
-        alone = not scene.radius.shape[1]  # kernels that hold grains' as well cannot be on real vectors: Taichi aborts
-        lanes = LANES if alone and not setting.per_particle else 1
+        lanes = LANES if setting.wide and not setting.per_particle else 1
         self.wide = lanes > 1
         behind = Behind(water, scene.tanks, scene.fills)
         grid = grid_round(water, fluid.particles["position"], scene.tanks, setting.walls.bounds, lanes)

@@ -287,9 +287,9 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
 
 
 def bears_vectors(scene, units: Units) -> bool:
-    """Whether blocks of pairs can be on real vectors: not beside water, for which Taichi aborts.
+    """Whether blocks of pairs can be on real vectors.
 
     Of outlines only convex ones have blocks of several contacts. The rule `area` is not written for vectors.
     """
     outlined = scene.shapes is None or (scene.shapes.convex and scene.shapes.contact != "area")
-    return outlined and not units.single and scene.fluid is None
+    return outlined and not units.single

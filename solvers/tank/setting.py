@@ -18,6 +18,8 @@ class Setting:
     which the carrier responds to the load on each piece (`Load`). Lists of grains have the `skin` (m), if one is given.
     All lists have `room` times the usual length, and what is usual of water is shared `among` so many worlds. Steps are
     up to `stretch` base steps long. `vectors`: lanes of a block of pairs of grains on real vectors, 0 without these.
+    `wide`: whether all matters made before are on real vectors. Kernels hold all matters, and one that is on real
+    vectors can hold no scalars of particles: Taichi then aborts.
     """
 
     arrays: State
@@ -33,6 +35,7 @@ class Setting:
     stretch: int = 1
     vectors: int = 0
     among: int = 0
+    wide: bool = True
 
     def units(self, count: int, more: int = 0) -> Units:
         """The units of a matter of `count` particles in each world, and `more` that do not move."""

@@ -27,7 +27,7 @@ def two_matters(monkeypatch, every: int, push=(0.0, 0.0), spring=SPRING, schedul
     def make_weight(scene, setting):
         return Weight(scene, setting, MASS, MIDDLE, spring, push, every)
 
-    monkeypatch.setattr("solvers.simulation.MATTERS", (*MATTERS, make_weight))
+    monkeypatch.setattr("solvers.matters.MATTERS", (*MATTERS, make_weight))
     grain = material(young=5e7)
     position = np.array([[[-0.02, RADIUS], [0.02, RADIUS]]])
     radius = np.full((1, 2), RADIUS)
