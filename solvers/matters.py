@@ -11,15 +11,15 @@ from solvers.tank.setting import Setting
 MATTERS = (make_grains, make_water, make_liquid)
 
 
-def setting_of(run, pieces: int) -> Setting:
-    """What the matters of a `solvers.simulation.Simulation` are made in; its tanks have so many pieces."""
+def setting_of(run) -> Setting:
+    """What the matters of a `solvers.simulation.Simulation` are made in."""
     return Setting(
         arrays=run.arrays,
         worlds=run.scene.worlds,
         bands=run.units_a_world,
         per_particle=run.schedule_name == "per-grain",
         walls=run.walls,
-        pieces=pieces,
+        pieces=run.scene.pieces,
         shares=run.scene.shares,
         carrier=run.carrier,
         skin=run.skin,

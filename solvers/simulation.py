@@ -52,27 +52,27 @@ class Simulation:
         stretch: int = 1,
     ):
         self.threads = threads or runtime.available_cores()
-        worlds, grains = scene.radius.shape
-        asked = scene.precision, moved(scene) > grains, worlds * moved(scene)
+        worlds, count = scene.worlds, moved(scene)
+        asked = scene.precision, scene.flows, worlds * count
         self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, *asked)
         runtime.initialise(self.threads, self.arch, scene.precision)
         self.scene, self.dt, self.longest_step = scene, scene.time_step(), scene.longest_step(1.0)  # s; at set-up
-        count = moved(scene)
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
-        self.stretch = max(stretch, scene.fluid.soft_stride if scene.fluid else 1) if alone else 1
-        self.vectors = wide.lanes_of_outlines(scene.precision) if scene.shapes else wide.lanes()
+        self.stretch = max(stretch, *(matter.soft_stride for matter in scene.matters), 1) if alone else 1
+        self.vectors = min((matter.lanes(scene.precision) for matter in scene.matters), default=wide.lanes())
         self.steps, self.room, self.among, self.skin = 0, 1, worlds, skin  # `among`: worlds at the start
-        self.simple = scene.shapes is None and scene.fluid is None  # short kernels
+        # Short kernels; and of discs beside water, which are 1.4 times as fast so, though they compile twice as long
+        self.simple = not scene.matters or any(matter.simple for matter in scene.matters)
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
         means = [quantity for quantity in self.observer.quantities if quantity.mean]
         # When last, and what the means were
         self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
-        places = np.zeros((worlds, 0, 2)) if position is None else np.asarray(position, dtype=np.float64)
-        self.place(places.reshape(worlds, grains, 2), scene.velocity, scene.spin)
+        grains = scene.grains
+        self.place(position, *((grains.velocity, grains.spin) if grains else ()))
 
     def _build(self) -> None:
         """Make the arrays and the objects whose kernels work on them."""
@@ -80,17 +80,16 @@ class Simulation:
         self.arrays = arrays = State(scene.precision)
         self.walls = Walls(arrays, scene.tanks, scene.parts, scene.apart)
         self.carrier = make_carrier(arrays, scene, self.dt)
-        pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
-        setting = setting_of(self, pieces)
+        setting = setting_of(self)
         matters = made(scene, setting)
         self.matters = {matter.name: matter for matter in matters}
         loads = [matter.load for matter in matters]
         self.carrier.bear(loads)
-        self.clock = Clock(arrays, setting.units(scene.radius.shape[1]))
+        self.clock = Clock(arrays, setting.units(scene.grains.count if scene.grains else 0))
         sequence = Sequence(matters, self.carrier)
         self.beat, self.wide = sequence.beat, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        self.observer = Observer(arrays, worlds, pieces, self.walls, self.carrier, loads)
+        self.observer = Observer(arrays, worlds, scene.pieces, self.walls, self.carrier, loads)
         arrays.finish()
 
     @property
@@ -103,20 +102,22 @@ class Simulation:
         """The scene's water; None if it has none."""
         return self.matters.get("water")
 
-    def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
+    def place(
+        self, position: np.ndarray | None, velocity: np.ndarray | None = None, spin: np.ndarray | None = None
+    ) -> None:
         """Place the grains at `position` (W, n, 2) m without contact history, and the water; `launch` all matters."""
         if self.grains:
-            self.grains.place(position)
+            self.grains.place(np.asarray(position, dtype=np.float64).reshape(*self.scene.grains.radius.shape, 2))
         if self.water:
             self.water.place()
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None: at rest."""
-        velocity = np.zeros((*self.scene.radius.shape, 2)) if velocity is None else velocity
-        spin = np.zeros(self.scene.radius.shape) if spin is None else spin
         if self.grains:
-            self.grains.launch(velocity, spin)
+            radius = self.scene.grains.radius
+            velocity = np.zeros((*radius.shape, 2)) if velocity is None else velocity
+            self.grains.launch(velocity, np.zeros(radius.shape) if spin is None else spin)
         self.clock.launch()
         self.unkicked = self.observed = self.steps
         self.moored = False
@@ -251,7 +252,7 @@ class Simulation:
         altered = replace(self.scene, **changes)
         if altered.longest_step(1.0) < SHORTER * self.longest_step:
             raise Unavailable("this asks for shorter time steps: start the experiment anew with it")
-        if altered.longest_bridge > self.scene.longest_bridge:
+        if altered.grains and altered.grains.longest_bridge > self.scene.grains.longest_bridge:
             raise Unavailable("this lets the liquid reach farther: start the experiment anew with it")
         self.scene = altered
         self.carrier.gravity.fill(altered.gravity)

@@ -11,6 +11,7 @@ from lab.preset.units import show
 from solvers.grains.bed.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.checks import DEEPEST_OVERLAP
+from solvers.grains.given import Grains
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import closing_speed
 from solvers.scene import Scene
@@ -65,28 +66,41 @@ def _farthest(preset: Preset) -> float:
     return max(0.5 * sizes.range[1] * shape.reach for sizes, shape in alone)
 
 
-def grains_of(preset: Preset) -> tuple[dict, np.ndarray]:
-    """What a scene says of the grains of all repeats, by its fields, and their starting positions (W, n, 2) m.
+def radii_of(scene: Scene) -> np.ndarray:
+    """Radii (W, n) m of a scene's grains; n is 0 without them."""
+    return scene.grains.radius if scene.grains else np.zeros((scene.worlds, 0))
+
+
+def fixed_of(scene: Scene) -> np.ndarray:
+    """The fixed grains (k, 3) y, z, radius in m of a scene."""
+    return scene.grains.fixed if scene.grains else NONE_FIXED
+
+
+def grains_of(preset: Preset) -> tuple[Grains | None, np.ndarray]:
+    """The grains of a scene, of all repeats, and their starting positions (W, n, 2) m; None and n = 0 without grains.
 
     Repeat w has the seed run.seed + w. Raises LabError if the grains do not fit into the tank.
     """
+    if preset.grains is None:
+        return None, np.zeros((preset.run.repeats, 0, 2))
     radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
     low, high = preset.diameters
-    given = {
-        "radius": radius,
-        "grain": preset.material,
-        "wall": preset.wall_material,
+    given = Grains(
+        radius,
+        preset.material,
+        preset.wall_material,
         **_kinds(preset, radius.shape),
-        "normal": preset.contact.normal,
-        "tangential": preset.contact.tangential,
-        "rolling": preset.contact.rolling,
-        "cohesion": preset.contact.cohesion,
-        "stiffness_scale": preset.stiffness_scale,
-        "sizes": (0.5 * low, 0.5 * high),
-        "fixed": fixed_grains(preset),
-        "integrator": preset.run.integrator,
-    }
-    return given | more, position
+        normal=preset.contact.normal,
+        tangential=preset.contact.tangential,
+        rolling=preset.contact.rolling,
+        cohesion=preset.contact.cohesion,
+        stiffness_scale=preset.stiffness_scale,
+        sizes=(0.5 * low, 0.5 * high),
+        fixed=fixed_grains(preset),
+        integrator=preset.run.integrator,
+        **more,
+    )
+    return given, position
 
 
 def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
@@ -160,12 +174,12 @@ def check_softness(scene: Scene) -> None:
     Speeds from a fall or from the moving tank are not known beforehand; for these only passing through is refused.
     """
     for what, speed, most in (
-        ("start", scene.start_speed, DEEPEST_OVERLAP),
+        ("start", scene.grains.start_speed, DEEPEST_OVERLAP),
         ("may meet", scene.credible_speed(), THROUGH),
     ):
-        deep = scene.deepest_overlap(speed)
+        deep = scene.grains.deepest_overlap(speed)
         if deep > most:
-            stiffer = scene.stiffness_scale * (deep / most) ** 2.5
+            stiffer = scene.grains.stiffness_scale * (deep / most) ** 2.5
             remedy = f"set it to at least {stiffer:.2g}"
             if stiffer > 1.0:
                 remedy = "raise material.young or slow them down"

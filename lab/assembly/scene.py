@@ -15,6 +15,7 @@ from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import further_tanks
 from solvers.fluid.timestep import longest_pace, soft_limit
+from solvers.grains.bed.relaxing import relaxed_start
 from solvers.grains.timestep import SLOWEST, share_to_lengthen
 from solvers.machine.runtime import choose_arch
 from solvers.motion.steered import Steered
@@ -38,13 +39,11 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     """
     worlds = preset.run.repeats
     check_room(preset, grain_count(preset), most_drops(preset))
-    given, position = {"radius": np.zeros((worlds, 0))}, np.zeros((worlds, 0, 2))
-    if preset.grains:
-        given, position = grains_of(preset)
+    grains, position = grains_of(preset)
     scene = Scene(
-        **given,
-        fluid=fluid_of(preset),
         outline=np.array(preset.tank.corners),
+        grains=grains,
+        fluid=fluid_of(preset),
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * worlds,
         soft_start=preset.motion.soft_start,
@@ -62,7 +61,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         check_softness(scene)
     scene.step = _step(preset, scene)
     if preset.grains and preset.grains.listed and preset.run.settles:  # without settling, overlaps may be intended
-        position = np.tile(scene.relaxed(position[0]), (worlds, 1, 1))
+        position = np.tile(relaxed_start(scene, position[0]), (worlds, 1, 1))
     return scene, position
 
 
@@ -80,7 +79,7 @@ def stretch(preset: Preset) -> int:
 
 def _base_share(scene: Scene, times: float) -> float:
     """What to take of the derived step so that it may be so many `times` as long; 1 where steps never are."""
-    if times <= 1.0 or scene.answers or scene.fluid or scene.integrator == "gear":
+    if times <= 1.0 or scene.answers or scene.fluid or scene.grains.integrator == "gear":
         return 1.0
     return share_to_lengthen(scene.step_limits()[0].step, scene.step_limits(SLOWEST)[0].step, times)
 
@@ -107,8 +106,10 @@ def _step(preset: Preset, scene: Scene) -> float:
     limits, run, interval = scene.step_limits(), preset.run, 1.0 / preset.record.series_rate
     wanted, longest, usual = run.step, stretch(preset), scene.longest_step(LEVELS[run.accuracy].longer_steps)
     if run.step == "auto":
-        scene.base_share = _base_share(scene, longest)
-        wanted = scene.base_share * usual
+        share = _base_share(scene, longest)
+        if scene.grains:
+            scene.grains.base_share = share
+        wanted = share * usual
         if scene.fluid and scene.fluid.water.air and scene.fluid.water.air.stiff_from > 0.0:
             longest = _soft_stride(preset, scene, wanted)
             scene.fluid = replace(scene.fluid, soft_stride=longest)

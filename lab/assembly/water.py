@@ -150,9 +150,10 @@ def air_volumes_of(scene: Scene) -> np.ndarray:
 
 def updates(scene: Scene, steps: int) -> int:
     """How often particles are moved, one by one, in so many base steps of all worlds."""
-    return steps * scene.radius.size + steps_of_water(scene, steps) * scene.worlds * scene.particles
+    of_grains = scene.grains.count * steps if scene.grains else 0
+    return scene.worlds * (of_grains + steps_of_water(scene, steps) * scene.particles)
 
 
 def particles(scene: Scene) -> int:
     """Number of grains and of particles of water and air in a world."""
-    return scene.radius.shape[1] + scene.particles
+    return sum(matter.count for matter in scene.matters)

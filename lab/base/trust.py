@@ -15,12 +15,12 @@ import numpy as np
 
 from lab.base.errors import Unusable
 from lab.base.memory import SHARE, machine_memory
+from solvers.time.kept import told_by
 
 ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
 BEYOND = 1e15  # larger than any SI number in a recording
 MOST_MEMBERS = 1000  # of a group
 UNWRITTEN = 2**26  # bytes that data sets may have beyond what the file holds: rows that a killed run did not write
-UNKICKED = 2  # index in a state's numbers: the grains' first step, negative if the clock was reset
 MOST_ROOM = 1024  # largest number of contacts per grain, many times that of a grain in a bed at rest
 LARGEST_CHUNK = 2**26  # bytes
 LONGEST_ATTRIBUTE = 2**20  # bytes
@@ -114,9 +114,10 @@ def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> Non
 
     The simulation itself refuses invalid indices in its contact lists (`State.write`).
     """
-    numbers = state["numbers"]
-    room, counts = int(numbers[1]), np.delete(numbers, UNKICKED)
-    if numbers.dtype.kind != "i" or counts.min() < 0 or not 1 <= room <= MOST_ROOM or room & (room - 1):
+    numbers = told_by(state)
+    room = numbers["room"]
+    counts = [number for name, number in numbers.items() if name != "unkicked"]  # that is negative after settling
+    if min(counts) < 0 or not 1 <= room <= MOST_ROOM or room & (room - 1):
         raise ValueError("its numbers are invalid")
     order = state["number"] if count else np.zeros((worlds, 0))
     if order.shape != (worlds, count) or not np.array_equal(np.sort(order), np.tile(np.arange(count), (worlds, 1))):

@@ -28,7 +28,7 @@ DROP_STEPS_PER_CORE = 1.1e6  # particle-steps of water a second of one core
 # Other parts of a run, in seconds of CPU time of one core (AMD EPYC, Zen 5): to start Python, its libraries and Taichi,
 # to compile the kernels when they are new, and in addition those of a ship
 STARTING = 2.0
-COMPILING = {"water": 25.0, "discs": 2.0, "continuous": 8.0, "nodes": 6.0, "area": 4.5}
+COMPILING = {"both": 90.0, "water": 25.0, "discs": 2.0, "continuous": 8.0, "nodes": 6.0, "area": 4.5}
 COMPILING_SHIP = 3.0
 STEP = 0.07e-6  # of a world, without its grains
 SAMPLE = 0.25e-3  # to stop and observe all worlds
@@ -138,8 +138,9 @@ def _tank(preset, scene) -> str:
     what = [f"{width} wide, {height} high"]
     if preset.tank.open_edges:
         what.append("open at the top")
-    if len(scene.fixed):
-        what.append(f"lined with {len(scene.fixed)} fixed grains")
+    lining = scene.grains.fixed if scene.grains else ()
+    if len(lining):
+        what.append(f"lined with {len(lining)} fixed grains")
     moving = [f"{name} ({'moving' if part.fastest() else 'still'})" for name, part in preset.parts.items()]
     if moving:
         what.append(f"with {', '.join(moving)}")
@@ -219,7 +220,8 @@ def _each(size: int, count: int, what: str) -> str:
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     """Seconds that a run takes, by its parts, without settling; kernels are compiled anew and all pictures painted."""
-    rule = "water" if scene.fluid else scene.shapes.contact if scene.shapes else "discs"
+    of_grains = scene.grains.shapes.contact if scene.grains and scene.grains.shapes else "discs"
+    rule = of_grains if not scene.fluid else "both" if scene.grains else "water"
     duration, record = preset.duration, preset.record
     found = {
         "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if preset.ship else 0.0),
@@ -239,8 +241,10 @@ def _steps(scene, duration: float) -> float:
 def _stepping(duration: float, preset, scene) -> float:
     """Seconds of computation for the steps of grains or water over a duration (s)."""
     rounds = -(-scene.worlds // min(scene.worlds, preset.run.threads or available_cores()))
-    speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
-    a_step = STEP + scene.radius.shape[1] / speed
+    a_step = STEP
+    if scene.grains:
+        shapes = scene.grains.shapes
+        a_step += scene.grains.count / (OUTLINES_PER_CORE[shapes.contact] if shapes else GRAIN_STEPS_PER_CORE)
     if scene.fluid:
         a_step += scene.fluid.count / scene.fluid.pace / DROP_STEPS_PER_CORE
     return rounds * _steps(scene, duration) * a_step

@@ -15,7 +15,7 @@ from lab.report.numbers import count_of
 from solvers.grains.laws import COHESION
 from solvers.grains.lists.skin import Skin
 from solvers.grains.shapes.given import Shapes
-from solvers.grains.timestep import FURTHEST
+from solvers.grains.timestep import FURTHEST, calm_speed
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
@@ -25,11 +25,11 @@ Rows = list[tuple[str, str]]
 
 def described(preset: Preset, scene: Scene) -> Rows:
     """The grains and their bed, each row a name and a text."""
-    worlds, count = preset.run.repeats, scene.radius.shape[1]
-    small, large = 2 * scene.radius.min(), 2 * scene.radius.max()
-    pair, wall = scene.interfaces
+    worlds, grains = preset.run.repeats, scene.grains
+    small, large = 2 * grains.radius.min(), 2 * grains.radius.max()
+    pair, wall = grains.interfaces
     return [
-        ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}{' in the first' * (worlds > 1)}"),
+        ("grains", f"{grains.count} in each, {show(small, 'm')} to {show(large, 'm')}{' in the first' * (worlds > 1)}"),
         *(("shape", _shape(name, shape)) for name, shape in preset.shape_classes.items()),
         ("bed", _bed(preset)),
         ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
@@ -39,17 +39,17 @@ def described(preset: Preset, scene: Scene) -> Rows:
 
 def laws(preset: Preset, simulation: Simulation) -> Rows:
     """What is compiled in for the grains, each row a name and a text."""
-    scene, remembered = simulation.scene, len(simulation.grains.lists.laws.memory)
-    rows = [("outlines", _outlines(preset, scene.shapes))] if scene.shapes else []
-    rows += [("normal law", scene.normal), ("tangential law", scene.tangential)]
-    if scene.rolling != "none":
-        rows.append(("rolling law", scene.rolling))
-    if scene.cohesion != "none":
-        rows.append(("cohesion", _cohesion(scene)))
+    given, remembered = simulation.scene.grains, len(simulation.grains.lists.laws.memory)
+    rows = [("outlines", _outlines(preset, given.shapes))] if given.shapes else []
+    rows += [("normal law", given.normal), ("tangential law", given.tangential)]
+    if given.rolling != "none":
+        rows.append(("rolling law", given.rolling))
+    if given.cohesion != "none":
+        rows.append(("cohesion", _cohesion(simulation.scene)))
     return [
         *rows,
         ("memory", f"{remembered} number(s) a contact"),
-        ("integrator", scene.integrator),
+        ("integrator", given.integrator),
         *_longer_steps(simulation),
         ("skin", f"{_skin(simulation.grains.lists.skin)} of the neighbour lists"),
     ]
@@ -64,11 +64,11 @@ def _longer_steps(simulation: Simulation) -> Rows:
     """When steps are longer than the step that is told, which the run time takes no account of."""
     if not (simulation.grains.paced and simulation.carrier.paced):
         return []
-    calm = simulation.scene.calm_speed(float(simulation.stretch))
+    calm = calm_speed(simulation.scene, float(simulation.stretch))
     if not calm:
         return [("slow grains", "steps are never longer: they do not follow from the grains' speeds")]
     when = f"while no two grains may meet faster than {show(calm, 'm/s')}"
-    share = simulation.scene.base_share
+    share = simulation.scene.grains.base_share
     room = f", for which they are shortened to {share:.2f} of the derived one" if share < 1.0 else ""
     return [
         ("slow grains", f"steps are {simulation.stretch} times as long {when}{room}; the run time below counts none")
@@ -118,11 +118,12 @@ def _outlines(preset: Preset, shapes: Shapes) -> str:
 
 def _cohesion(scene) -> str:
     """The law of cohesion, and its force between two mean grains."""
-    law, between, radius = COHESION[scene.cohesion](), scene.interfaces[0], scene.mean_radius
+    grains = scene.grains
+    law, between, radius = COHESION[grains.cohesion](), grains.interfaces[0], grains.mean_radius
     pull = law.coefficients(between)[0] * 0.5 * radius
-    weight = 4.0 / 3.0 * pi * radius**3 * scene.grain[0].density * scene.gravity
+    weight = 4.0 / 3.0 * pi * radius**3 * grains.grain[0].density * scene.gravity
     heavy = f"{pull / weight:.2g} times a mean grain's weight, " if weight else ""
-    return f"{scene.cohesion}: {show(pull, 'N')}, {heavy}across gaps of up to {show(law.range(between), 'm')}"
+    return f"{grains.cohesion}: {show(pull, 'N')}, {heavy}across gaps of up to {show(law.range(between), 'm')}"
 
 
 def in_tank(recording: Recording) -> Iterator[str]:

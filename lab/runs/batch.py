@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.drawn import classes
+from lab.assembly.grains import fixed_of, radii_of
 from lab.assembly.scene import build, stretch
 from lab.assembly.water import air_volumes_of, particles, updates, volumes_of
 from lab.base.errors import Unusable
@@ -32,14 +33,14 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world, work
 
-# Steps per call of the solver times grains per world. It limits the delay after Ctrl-C to some tenths of a second for
-# each world on a core. It must not depend on other runs or on the clock: grains may be renumbered between calls.
+# Steps per call of the solver times grains per world: a delay after Ctrl-C of some tenths of a second for each world on
+# a core. It must not depend on other runs or on the clock, since grains may be renumbered between calls.
 GRAIN_STEPS_A_CALL = 2_000_000
 
 
 def outlines_of(preset: Preset, scene: Scene) -> Outlines | None:
     """The outlines of a preset's irregular grains, None if all are discs."""
-    shapes = scene.shapes
+    shapes = scene.grains.shapes if scene.grains else None
     return Outlines(shapes.outlines, classes(preset), shapes.which) if shapes else None
 
 
@@ -62,10 +63,7 @@ class Run:
     @property
     def can_share(self) -> bool:
         """Whether it may share a batch; not in schedule per-band, which divides a world by the number of threads."""
-        settings, worlds, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
-        arch = choose_arch(settings.arch, settings.precision, self.scene.particles > 0, worlds * count)
-        answers, threads = self.scene.answers, settings.threads or available_cores()
-        return choose_schedule(settings.schedule, arch, worlds, count, threads, answers) != "per-band"
+        return self.device()["schedule"] != "per-band"
 
     def device(self, worlds: int = 0) -> dict[str, object]:
         """The device for a batch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
@@ -87,13 +85,13 @@ class Run:
             preset=self.loaded.name,
             given=self.loaded.given_text,
             resolved=preset,
-            radius=scene.radius,
+            radius=radii_of(scene),
             outline=scene.outline,
             step=scene.step,
             volume=volumes_of(scene),
             air=air_volumes_of(scene),
-            kind=scene.kind,
-            fixed=scene.fixed,
+            kind=scene.grains.kind if scene.grains else None,
+            fixed=fixed_of(scene),
             open_edges=scene.open_edges,
             parts={name: part.line for name, part in preset.parts.items()},
             shapes=outlines_of(preset, scene),
@@ -158,7 +156,7 @@ class Batch:
             self.progress.notes.extend(kept.notes)
             self._simulation = self._simulate(self._scene(), self._position())
             try:
-                check_state(kept.state, *self._simulation.scene.radius.shape)
+                check_state(kept.state, *radii_of(self._simulation.scene).shape)
                 self._simulation.restore(kept.state)
             except (KeyError, ValueError, TypeError, IndexError) as error:
                 raise Unusable(f"{self.home}: its checkpoint is of another scene: start the run again.") from error
@@ -269,8 +267,8 @@ class Batch:
         """The worlds of each run in the simulation."""
         begin = 0
         for run in self.runs:
-            yield slice(begin, begin + len(run.scene.radius))
-            begin += len(run.scene.radius)
+            yield slice(begin, begin + run.scene.worlds)
+            begin += run.scene.worlds
 
     def _scene(self) -> Scene:
         return Scene.joined([run.scene for run in self.runs])

@@ -79,7 +79,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     BadState from the watch, LabError if a bed does not fit under its tank's lid. Without grains nothing settles.
     """
     simulation = start(scene, position)
-    if not scene.radius.size:  # water starts at rest
+    if not scene.grains:  # water starts at rest
         return simulation
     if not how.settle:
         progress.note("The grains start where they were placed, without settling (run.settle = false, or no gravity).")
@@ -144,22 +144,23 @@ def _poured(
     Its walls reach as high as the grains. An undisturbed bed is poured without friction, which packs it as densely as
     shaking would, and is then levelled. In the returned scene irregular grains have the angles at which they lie.
     """
-    pouring = replace(scene, outline=np.array(how.outline), open_edges=(), motions=())
+    pouring, grains = replace(scene, outline=np.array(how.outline), open_edges=(), motions=()), scene.grains
     if how.surface == "undisturbed":
-        pouring = replace(pouring, grain=_frictionless(scene.grain), wall=_frictionless(scene.wall))
+        smooth = {"grain": _frictionless(grains.grain), "wall": _frictionless(grains.wall)}
+        pouring = replace(pouring, grains=replace(grains, **smooth))
     simulation = start(pouring, position)
     try:
         _settle(simulation, how, "pouring", progress)
         snapshot = simulation.snapshot()
     finally:
         simulation.close()
-    poured, inner = snapshot["position"], scene.radius
-    if scene.shapes:
-        inner = inner * np.array([outline.smallest_radius for outline in scene.shapes.outlines])[scene.shapes.which]
-        scene = replace(scene, shapes=replace(scene.shapes, angle=snapshot["angle"]))
+    poured, inner = snapshot["position"], grains.radius
+    if grains.shapes:
+        inner = inner * np.array([outline.smallest_radius for outline in grains.shapes.outlines])[grains.shapes.which]
+        scene = replace(scene, grains=replace(grains, shapes=replace(grains.shapes, angle=snapshot["angle"])))
     if how.surface == "undisturbed":
-        beds = zip(poured, scene.radius, strict=True)
-        poured = np.stack([levelled(bed, radius, pouring.outline, scene.fixed) for bed, radius in beds])
+        beds = zip(poured, grains.radius, strict=True)
+        poured = np.stack([levelled(bed, radius, pouring.outline, grains.fixed) for bed, radius in beds])
     if not scene.open_edges:
         for bed, radius in zip(poured, inner, strict=True):
             if not np.all(clear_of_walls(bed, scene.outline, FREE * radius)):

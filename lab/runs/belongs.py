@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.grains import radii_of
 from lab.assembly.water import air_volumes_of, volumes_of
 from lab.base.errors import LabError, Unusable
 from lab.preset.schema import Preset
@@ -34,7 +35,7 @@ def check_belongs(run: Run) -> None:
     """Raise Unusable if the recording in a run's folder was made from another preset or another scene."""
     with open_recording(run.folder) as recording:
         pairs = (
-            (recording.radius, run.scene.radius),
+            (recording.radius, radii_of(run.scene)),
             (recording.volume, volumes_of(run.scene)),
             (recording.air_volume, air_volumes_of(run.scene)),
             (recording.outline, run.scene.outline),

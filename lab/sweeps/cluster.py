@@ -192,7 +192,7 @@ def run_on_worker(texts: Sequence[tuple[str, str, str]], settings: WorkerSetting
         progress.warn("The run was made on a worker with other versions of the lab or its libraries.")
     with _in_a_folder(worker.local_directory) as home:
         runs = [prepare(preset, home / f"{k:03}") for k, preset in enumerate(presets)]
-        local, worlds = [_with_settings(run, settings) for run in runs], sum(len(run.scene.radius) for run in runs)
+        local, worlds = [_with_settings(run, settings) for run in runs], sum(run.scene.worlds for run in runs)
         for run, here in zip(runs, local, strict=True):
             run.make_recording(device=here.device(worlds))
         run_batch(local, home, progress)

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from lab.assembly.grains import fixed_of, radii_of
 from lab.assembly.scene import build
 from lab.assembly.water import air_volumes_of, volumes_of
 from lab.base.turn import in_turn
@@ -44,23 +45,23 @@ def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
 
 def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, position: np.ndarray) -> None:
     """Write the recording of the dry run."""
-    count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.line for name, part in preset.parts.items()}
+    radius, parts = radii_of(scene)[:, :GRAINS], {name: part.line for name, part in preset.parts.items()}
     volume, air = (of(scene)[:, :GRAINS] for of in (volumes_of, air_volumes_of))
     new_recording(
         folder,
         preset=loaded.name,
         given=loaded.given_text,
         resolved=preset,
-        radius=scene.radius[:, :count],
+        radius=radius,
         outline=scene.outline,
         step=scene.step,
         volume=volume,
         air=air,
-        fixed=scene.fixed,
+        fixed=fixed_of(scene),
         open_edges=scene.open_edges,
         parts=parts,
     )
-    rate, sizes = preset.record.series_rate, sizes_of(preset, scene.radius[:, :count], volume, len(parts), air)
+    rate, sizes = preset.record.series_rate, sizes_of(preset, radius, volume, len(parts), air)
     a_frame = max(1, round(rate / preset.record.picture_rate))
     tables = tables_of(preset, steered=False)
     series, frames = tables["series"], tables["frames"]
@@ -68,7 +69,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
     row = {name: np.full(shape, never.get(name, 1.0)) for name, (shape, _) in rows_of(series, sizes).items()}
     frame = {name: np.zeros(shape) for name, (shape, _) in rows_of(frames, sizes).items()}
     if preset.grains:
-        frame["position"] = position[:, :count]
+        frame["position"] = position[:, :GRAINS]
     if preset.water:
         frame["water_place"] = scene.fluid.particles["position"][:, : volume.shape[1]]
     times = np.arange(max(1, round(preset.duration * rate)) + 1) / rate

@@ -171,7 +171,7 @@ class _SweepRunner:
         runs = []
         for number in numbers:
             runs.append(prepare(self.sweep.points[number], self.folders[number]))
-        worlds = sum(len(run.scene.radius) for run in runs)
+        worlds = sum(run.scene.worlds for run in runs)
         for run in runs:
             if (run.folder / RECORDING).exists():
                 check_belongs(run)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.grains import fixed_of, radii_of
 from lab.assembly.scene import vessels
 from lab.assembly.water import air_volumes_of, volumes_of
 from lab.paint.cargo.looks import Stowage
@@ -50,12 +51,13 @@ class Scenery:
     def of(cls, loaded: LoadedPreset, folder: Path, simulation: Simulation) -> "Scenery":
         """The scenery of a preset's simulation, running or while its bed settles."""
         preset, scene = loaded.resolved, simulation.scene
-        kind = np.zeros(scene.radius.shape, dtype=int) if scene.kind is None else scene.kind
+        radius, grains = radii_of(scene), scene.grains
+        kind = grains.kind if grains and grains.kind is not None else np.zeros(radius.shape, dtype=int)
         lines = {name: np.array(part.line) for name, part in preset.parts.items()}
-        bounds = scene.outline, tuple(scene.open_edges), scene.fixed
+        bounds = scene.outline, tuple(scene.open_edges), fixed_of(scene)
         shapes = outlines_of(preset, scene)
         pool = Pool.of(preset, *(of(scene) for of in (volumes_of, air_volumes_of)))
-        return cls(preset, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt, pool)
+        return cls(preset, loaded.name, folder, radius, kind, *bounds, lines, shapes, simulation.dt, pool)
 
     def for_filling(self, top: float) -> "Scenery":
         """The scenery while the bed settles: no ship, and the tank cut off at the height `top` (m)."""

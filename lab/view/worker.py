@@ -61,7 +61,7 @@ class SentProgress(Progress):
         frame = LiveFrame.of(simulation, simulation.observe(), UNTOUCHED)
         if simulation is not self._watched:
             self._watched = simulation
-            top = float(frame.grains["position"][..., 1].max() + 2.0 * simulation.scene.radius.max())
+            top = float(frame.grains["position"][..., 1].max() + 2.0 * simulation.scene.grains.radius.max())
             self._outbox.send("settling", Scenery.of(self._loaded, self._folder, simulation).for_filling(top))
         self._outbox.send("frame", (frame, 0.0), newest=True)
         self._sent = time.monotonic()

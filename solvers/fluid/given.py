@@ -1,10 +1,11 @@
 """What a scene says of its water: the liquid, the particles' size, the models by name, and the gauges."""
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
+from solvers.machine import wide
 from solvers.machine.marks import Doc, EachWorld, Interval, NotOfBed, Unit
 
 # A particle as it starts: position (m) and velocity over the earth (m/s) in the tank's axes, excess s = ρ/ρ0 − 1 of
@@ -148,11 +149,18 @@ class Fluid:
     of the fluid is `pace` steps of the scene, more than 1 in ships alone, and while its air is soft `soft_stride`.
     """
 
+    simple: ClassVar = False  # its kernels are long
+
     water: Water
     particles: Annotated[np.ndarray, EachWorld(lambda fluid: fluid.count), NotOfBed()]
     in_tanks: tuple[int, ...] = ()
     pace: Annotated[int, NotOfBed()] = 1
     soft_stride: Annotated[int, NotOfBed()] = 1
+
+    @property
+    def worlds(self) -> int:
+        """Number of worlds, W."""
+        return len(self.particles)
 
     @property
     def count(self) -> int:
@@ -173,6 +181,10 @@ class Fluid:
     def softened(self) -> "Fluid":
         """As it is at the start, until its air is stiff."""
         return replace(self, water=self.water.softened)
+
+    def lanes(self, precision: str) -> int:
+        """Lanes of a block of pairs of grains beside it on real vectors, 0 for none."""
+        return wide.lanes()
 
     def fills(self, tanks: int) -> tuple[int, ...]:
         """How many particles are in each of so many tanks."""

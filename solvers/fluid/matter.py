@@ -294,6 +294,6 @@ def make_water(scene, setting: Setting) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
     if scene.fluid is None or not scene.fluid.moved:
         return None
-    refuse_scene(scene.fills, len(scene.parts), bool(scene.radius.size))
+    refuse_scene(scene.fills, len(scene.parts), bool(scene.grains))
     refuse_reduced(scene)
     return WaterMatter(scene, setting)

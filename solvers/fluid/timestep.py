@@ -62,7 +62,7 @@ def longest_pace(scene, step: float) -> int:
 
     Not where a ship takes its water's answer on her own side, or takes long steps herself.
     """
-    if not (scene.fluid and scene.radius.size and scene.vessels):
+    if not (scene.fluid and scene.grains and scene.vessels):
         return 1
     if scene.fluid.water.added_mass == "layer" or scene.vessels[0].handover:
         return 1

@@ -8,7 +8,7 @@ import taichi as ti
 from solvers.grains import quantities
 from solvers.grains.contacts import Contacts
 from solvers.grains.lists.neighbours import Neighbours
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.quantity import parted, places
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
@@ -30,7 +30,14 @@ class Census:
     """
 
     def __init__(
-        self, arrays: State, units: Units, grains: Grains, walls: Walls, lists: Neighbours, contacts: Contacts, carrier
+        self,
+        arrays: State,
+        units: Units,
+        grains: GrainState,
+        walls: Walls,
+        lists: Neighbours,
+        contacts: Contacts,
+        carrier,
     ):
         self.units, self.grains, self.walls, self.lists = units, grains, walls, lists
         self.contacts, self.carrier = contacts, carrier

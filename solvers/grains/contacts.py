@@ -5,7 +5,7 @@ import taichi as ti
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.laws.extremes import greater
 from solvers.grains.lists.neighbours import Neighbours
-from solvers.grains.state import FAR, Grains
+from solvers.grains.state import FAR, GrainState
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.machine.wide import minus
@@ -31,7 +31,7 @@ class Contacts:
         self,
         arrays: State,
         units: Units,
-        grains: Grains,
+        grains: GrainState,
         walls: Walls,
         lists: Neighbours,
         laws: ChosenLaws,

@@ -15,16 +15,16 @@ from solvers.grains.lists.numbering import Numbering
 from solvers.grains.lists.skin import Skin, widths
 from solvers.grains.mover import Mover
 from solvers.grains.pressing import Presser, Pressing
-from solvers.grains.shapes.grains import ShapedGrains
+from solvers.grains.shapes.grains import ShapedState
 from solvers.grains.shapes.rules.area import Area
 from solvers.grains.shapes.rules.contacts import ShapedContacts
 from solvers.grains.shapes.rules.continuous import Continuous
 from solvers.grains.shapes.rules.discrete import Discrete
 from solvers.grains.shapes.rules.lists import ShapedNeighbours
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
+from solvers.grains.timestep import calm_speed
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
-from solvers.machine.units import Units
 from solvers.motion.carrier import per_metre
 from solvers.ship.body import Body
 from solvers.space.axes import dot
@@ -49,24 +49,32 @@ class GrainMatter(Matter):
     of_contacts: ClassVar = ("elastic", "contacts", "overlap")  # quantities that are known only after a step
 
     def __init__(
-        self, scene, setting: Setting, load: Load, grains: Grains, lists: Neighbours, contacts: Contacts, mover: Mover
+        self,
+        scene,
+        setting: Setting,
+        load: Load,
+        grains: GrainState,
+        lists: Neighbours,
+        contacts: Contacts,
+        mover: Mover,
     ):
         arrays, walls, units = setting.arrays, setting.walls, load.units
+        given = scene.grains
         self.scene, self.units, self.load, self.grains, self.lists = scene, units, load, grains, lists
         self.contacts, self.mover, self.mass = contacts, mover, grains.mass
         self.wide = lists.pairs.wide
         # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
-        self.numbering = Numbering(arrays, grains, lists, 2.0 * scene.mean_radius, scene.shapes is None)
+        self.numbering = Numbering(arrays, grains, lists, 2.0 * given.mean_radius, given.shapes is None)
         self.census = Census(arrays, units, grains, walls, lists, contacts, setting.carrier)
         self.presser = Presser(units, grains, walls, lists, contacts)
         own = arrays.under("grains")
         self.unseen = UNSEEN if own.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
-        way = np.array([FASTEST_STEP * scene.sizes[0]])
+        way = np.array([FASTEST_STEP * given.sizes[0]])
         self.way_a_step = own.holding("way_a_step", way, "one", own.exact)
-        self.stretch = 1 if scene.integrator == "gear" else setting.stretch  # Gear's derivatives are of one step
+        self.stretch = 1 if given.integrator == "gear" else setting.stretch  # Gear's derivatives are of one step
         self.paced, self.doublings = self.stretch > 1, int(np.log2(self.stretch))
         if self.paced:
-            speeds = [scene.calm_speed(2.0 ** (k + 1)) for k in range(self.doublings)]
+            speeds = [calm_speed(scene, 2.0 ** (k + 1)) for k in range(self.doublings)]
             self.calm = own.holding("calm", np.array(speeds), "doubling")
         self.before = (Phase(self.push, units),)
         self.after = (Phase(self.move, units),)
@@ -183,7 +191,7 @@ class GrainMatter(Matter):
 
     def restlessness(self, rows: dict[str, np.ndarray]) -> np.ndarray:
         """Mean kinetic energy of a grain, spin included, in units of m g d, (W,)."""
-        radius = self.scene.radius
+        radius = self.scene.grains.radius
         scale = (self.grains.mass * self.scene.gravity * 2.0 * radius).mean(axis=1)
         return (rows["kinetic"] + rows["rotational"]) / radius.shape[1] / scale
 
@@ -216,7 +224,7 @@ class GrainMatter(Matter):
     def alter(self, scene) -> None:
         """Go on with the materials of a scene that equals the present one in everything else."""
         self.scene = scene
-        self.lists.laws.learn(scene.interfaces_of)
+        self.lists.laws.learn(scene.grains.interfaces_of)
         self.lists.expire()  # so that the constants of each contact are recomputed
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
@@ -258,38 +266,30 @@ class GrainMatter(Matter):
 
 def make_grains(scene, setting: Setting) -> GrainMatter | None:
     """The grains of a scene (`solvers.scene.Scene`); None where it has none."""
-    if not scene.radius.size:
+    if scene.grains is None:
         return None
-    arrays, walls, count = setting.arrays, setting.walls, scene.radius.shape[1]
-    units = setting.units(count, len(scene.fixed))
+    given = scene.grains
+    arrays, walls, count = setting.arrays, setting.walls, given.count
+    units = setting.units(count, len(given.fixed))
     load = setting.load(arrays.under("grains"), units)
     may_leave = any(tank.open_edges for tank in scene.tanks)
-    given = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
-    integrator = INTEGRATORS[scene.integrator]()
-    laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
-    laws.wide = setting.vectors if laws.fit and bears_vectors(scene, units) else 0
-    moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
-    grains = Grains(arrays, *given) if scene.shapes is None else ShapedGrains(arrays, scene.shapes, *given)
-    together = scene.shapes is None and units.whole
+    state = given.radius, given.density, given.fixed, units.ghosts, may_leave, given.kind
+    integrator = INTEGRATORS[given.integrator]()
+    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator)
+    laws.wide = setting.vectors if laws.fit and given.bears_vectors and not units.single else 0
+    moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
+    grains = GrainState(arrays, *state) if given.shapes is None else ShapedState(arrays, given.shapes, *state)
+    together = given.shapes is None and units.whole
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
     wide = widths(scene, setting.skin, units.single, together)
-    skin = Skin(arrays, grains, wide, scene.longest_bridge, early, together, walls.moving)
-    lists = scene.farthest_reach, skin, laws, moduli, setting.room
-    if scene.shapes is None:
+    skin = Skin(arrays, grains, wide, given.longest_bridge, early, together, walls.moving)
+    lists = given.farthest_reach, skin, laws, moduli, setting.room
+    if given.shapes is None:
         neighbours = Neighbours(arrays, units, grains, walls, *lists)
         contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
     else:
-        rule = RULES[scene.shapes.contact](arrays, units, walls, scene.shapes, laws.wide)
+        rule = RULES[given.shapes.contact](arrays, units, walls, given.shapes, laws.wide)
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
     mover = Mover(arrays, units, grains, integrator, setting.carrier.rotating)
     return GrainMatter(scene, setting, load, grains, neighbours, contacts, mover)
-
-
-def bears_vectors(scene, units: Units) -> bool:
-    """Whether blocks of pairs can be on real vectors.
-
-    Of outlines only convex ones have blocks of several contacts. The rule `area` is not written for vectors.
-    """
-    outlined = scene.shapes is None or (scene.shapes.convex and scene.shapes.contact != "area")
-    return outlined and not units.single

@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.grains.shapes.pose import towards
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import State
 from solvers.machine.units import Units
 
@@ -12,7 +12,7 @@ from solvers.machine.units import Units
 class Mover:
     """Moves grains, in a tank that may be `rotating`."""
 
-    def __init__(self, arrays: State, units: Units, grains: Grains, integrator, rotating: bool):
+    def __init__(self, arrays: State, units: Units, grains: GrainState, integrator, rotating: bool):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
         names = (f"extra.{k}" for k in range(integrator.extra * (grains.axes + 1)))
         self.extra = arrays.under("mover").reals(grains.each, *names)

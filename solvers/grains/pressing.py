@@ -7,7 +7,7 @@ import taichi as ti
 
 from solvers.grains.contacts import Contacts, is_some
 from solvers.grains.lists.neighbours import Neighbours
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
@@ -39,7 +39,7 @@ UNTOUCHED = Pressing(np.zeros((0, 2), dtype=int), np.zeros((0, 2)), np.zeros((0,
 class Presser:
     """Reads the contact lists without changing the contact history."""
 
-    def __init__(self, units: Units, grains: Grains, walls: Walls, neighbours: Neighbours, contacts: Contacts):
+    def __init__(self, units: Units, grains: GrainState, walls: Walls, neighbours: Neighbours, contacts: Contacts):
         self.units, self.grains, self.walls = units, grains, walls
         self.neighbours, self.contacts = neighbours, contacts
 

@@ -10,7 +10,7 @@ FAR = 1e3  # m
 
 
 @ti.data_oriented
-class Grains:
+class GrainState:
     """Arrays (W, n + k + ghosts), SI, in the tank's frame: n that move, k fixed ones of rough walls, far-off points.
 
     `place` (m), `velocity` and `now` (m/s) and `force` (N) are lists with an array for each of the `axes`; angles,

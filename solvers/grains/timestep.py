@@ -102,21 +102,33 @@ def limits(
     return sorted(found, key=lambda limit: limit.step)
 
 
+def calm_speed(scene, times: float) -> float:
+    """The highest closing speed (m/s) at which the step may be so many `times` as long, by its bounds; 0: never.
+
+    `scene` is a `solvers.scene.Scene`. A collision lasts as v^(−1/5); other bounds do not depend on the speed.
+    """
+    wanted = times * scene.grains.base_share * scene.step_limits()[0].step
+    speeds = np.geomspace(SLOWEST, max(scene.credible_speed(), SLOWEST), 60)
+    allowed = [scene.step_limits(speed)[0].step >= wanted for speed in speeds]
+    return float(speeds[allowed].max(initial=0.0))
+
+
 def limits_of_grains(scene, speed: float) -> list[Limit]:
     """Bounds on the step of a scene's grains that meet at a speed (m/s): those of Verlet's scheme times the `reach`.
 
     `scene` is a `solvers.scene.Scene`; of its worlds the tightest counts.
     """
-    share = scene.shapes.least_mass if scene.shapes else 1.0
+    grains = scene.grains
+    share = grains.shapes.least_mass if grains.shapes else 1.0
     found: dict[tuple, list[Limit]] = {}
-    for grain, rows in zip(scene.grain, scene.interfaces_of, strict=True):
-        for a, b in product(range(scene.kinds), repeat=2):
+    for grain, rows in zip(grains.grain, grains.interfaces_of, strict=True):
+        for a, b in product(range(grains.kinds), repeat=2):
             # The lighter of two kinds of grains stands for both, since its collisions are shorter.
-            lighter = min((grain, *scene.others)[a], (grain, *scene.others)[b], key=lambda kind: kind.density)
-            key = lighter, (rows[a * scene.kinds + b], rows[scene.kinds**2 + a])
+            lighter = min((grain, *grains.others)[a], (grain, *grains.others)[b], key=lambda kind: kind.density)
+            key = lighter, (rows[a * grains.kinds + b], rows[grains.kinds**2 + a])
             if key not in found:
-                found[key] = limits(scene.sizes[0], *key, scene.stiffness_scale, speed, scene.laws, share)
-    integrator = INTEGRATORS[scene.integrator]
+                found[key] = limits(grains.sizes[0], *key, grains.stiffness_scale, speed, grains.laws, share)
+    integrator = INTEGRATORS[grains.integrator]
     reach, bearing = integrator.reach, integrator.bearing
     of = "" if reach == 1.0 else f"{reach:g} of "
     tightest = min(found.values(), key=lambda bounds: bounds[0].step)
@@ -129,4 +141,4 @@ def limits_of_grains(scene, speed: float) -> list[Limit]:
         )
         for limit in tightest
     ]
-    return [*bounds, watched(scene.sizes[0], speed, scene.radius.shape[1], scene.shapes is not None)]
+    return [*bounds, watched(grains.sizes[0], speed, grains.count, grains.shapes is not None)]

@@ -29,20 +29,27 @@ def axes_of(run) -> dict[str, Axes]:
     return {name: () for name in state_of(run)}
 
 
+def told_by(state: Mapping[str, np.ndarray]) -> dict[str, int]:
+    """The numbers that a state tells; of those without names the last ones may be missing. Raises ValueError."""
+    if "numbers" in state:
+        found = dict(zip(ONCE, state["numbers"], strict=False))
+    else:
+        found = {name: state[f"run.{name}"] for name in ONCE}
+    if "room" not in found or any(np.ndim(number) or np.asarray(number).dtype.kind != "i" for number in found.values()):
+        raise ValueError("its numbers are invalid")
+    return {name: int(number) for name, number in found.items()}
+
+
 def take(run, state: Mapping[str, np.ndarray]) -> bool:
     """Give a run the numbers of a state; returns whether its arrays are to be made anew. Raises ValueError.
 
-    States that tell them without names may lack the last ones. In such a state no matter beside another one is on real
-    vectors.
+    In a state that tells them without names no matter beside another one is on real vectors.
     """
     before = numbers_of(run)
-    if "numbers" in state:
-        told = dict(zip(ONCE, map(int, state["numbers"]), strict=False))
-        told |= {"vectors": 0} if len(run.matters) > 1 else {}
-    else:
-        told = {name: int(state[f"run.{name}"]) for name in before}
-    told = before | told
-    if run.scene.shapes:
+    told = before | told_by(state)
+    if "numbers" in state and len(run.matters) > 1:
+        told["vectors"] = 0
+    if run.scene.grains and run.scene.grains.shapes:
         told["vectors"] = told_of_outlines(told["vectors"])
     check_cut(told["units"], told["schedule"], told["vectors"], moved(run.scene))
     for name in PLAIN:

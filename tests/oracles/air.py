@@ -9,6 +9,7 @@ from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.water import GRAVITY, PlainWater, box, kernel
 from tests.oracles.water import again as placed_again
 
@@ -24,7 +25,7 @@ def both(width: float, height: float, depth: float, rows: int, **changes) -> Sce
     outline = box(width, height)
     drops = with_air(at_rest(outline, depth, water, GRAVITY), air_above(outline, depth, water, GRAVITY))
     given = {"radius": np.zeros((1, 0)), "outline": outline, "gravity": GRAVITY}
-    return Scene(**{**given, "fluid": Fluid(water, drops[None]), **changes})
+    return scene_of(**{**given, "fluid": Fluid(water, drops[None]), **changes})
 
 
 def filled(places: np.ndarray, gas: np.ndarray, volume: float, excess: np.ndarray | float = 0.0) -> np.ndarray:

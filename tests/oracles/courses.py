@@ -13,6 +13,7 @@ from solvers.machine.errors import BadState
 from solvers.machine.limit import furthest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 RADIUS = 1.5e-3  # m, where nothing else is said
@@ -42,7 +43,7 @@ class Trial:
     @property
     def mass(self) -> np.ndarray:
         """Masses (n,) kg."""
-        return 4.0 / 3.0 * np.pi * self.scene.radius[0] ** 3 * self.scene.density[0]
+        return 4.0 / 3.0 * np.pi * self.scene.grains.radius[0] ** 3 * self.scene.grains.density[0]
 
     @property
     def weight(self) -> float:
@@ -93,7 +94,7 @@ def bed(
     outline = box((across + 0.5) * pitch, 2.0 * ceil(count / across) * pitch)
     grain = grain or material()
     return Trial(
-        Scene(radius, outline, grain, grain, **scene),
+        scene_of(radius, outline, grain, grain, **scene),
         start_positions(radius, outline, random),
         duration,
         looks=looks,
@@ -108,7 +109,7 @@ def square(columns: int, rows: int, pitch: float) -> np.ndarray:
 
 def wall_stiffness(trial: Trial) -> float:
     """k (N/m^1.5) of a grain and a wall."""
-    return hertz_stiffness(trial.scene.interfaces[1].young_modulus, trial.scene.sizes[0])
+    return hertz_stiffness(trial.scene.grains.interfaces[1].young_modulus, trial.scene.grains.sizes[0])
 
 
 @contextmanager
@@ -143,7 +144,7 @@ def followed(run: Simulation, trial: Trial, step: float) -> Course:
 def _begin(run: Simulation, trial: Trial, step: float) -> None:
     run.dt = step
     run.start_clock()
-    run.place(trial.position[None], trial.scene.velocity, trial.scene.spin)
+    run.place(trial.position[None], trial.scene.grains.velocity, trial.scene.grains.spin)
 
 
 def _look(run: Simulation) -> dict[str, np.ndarray]:
@@ -155,7 +156,7 @@ def _look(run: Simulation) -> dict[str, np.ndarray]:
     carried = np.array([cosine * rate_y + sine * rate_z, -sine * rate_y + cosine * rate_z])
     y, z = state["position"].T
     velocity = state["velocity"] + carried + turning * np.column_stack([-z, y])
-    mass, radius = run.grains.mass[0], run.scene.radius[0]
+    mass, radius = run.grains.mass[0], run.scene.grains.radius[0]
     kinetic = 0.5 * mass @ (velocity**2).sum(axis=1) + 0.2 * (mass * radius**2) @ (state["spin"] + turning) ** 2
     energy = kinetic + rows["potential"] + rows["elastic"]
     places = {"position": state["position"], "spin": state["spin"]}
@@ -177,10 +178,10 @@ def overlap_of(scene: Scene, speed: float, load: float) -> float:
     ξ = ((5/4) m v²/k)^(2/5) (Johnson 1985, eq. 11.22) of the largest grain upon the smallest one, and
     ξ = (F/k)^(2/3); the larger of grain on grain and grain on wall.
     """
-    smallest, largest = scene.sizes
-    mass = 4.0 / 3.0 * np.pi * largest**3 * scene.density.max()
+    smallest, largest = scene.grains.sizes
+    mass = 4.0 / 3.0 * np.pi * largest**3 * scene.grains.density.max()
     deepest = []
-    for between, share in zip(scene.interfaces, (0.5, 1.0), strict=True):
+    for between, share in zip(scene.grains.interfaces, (0.5, 1.0), strict=True):
         k = hertz_stiffness(between.young_modulus, share * smallest)
         struck = share * mass if smallest == largest else mass
         deepest += [(1.25 * struck * speed**2 / k) ** 0.4, (load / k) ** (2.0 / 3.0)]

@@ -3,8 +3,8 @@
 import numpy as np
 
 from solvers.grains.materials import Material
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 
 
 def material(**changes) -> Material:
@@ -29,6 +29,6 @@ def simulation(position, radius, outline, grain=None, wall=None, velocity=None, 
     spin = np.zeros((worlds, count)) if spin is None else np.broadcast_to(spin, (worlds, count))
     scene.setdefault("start_speed", float(np.abs(velocity).max()))
     radius = np.broadcast_to(radius, (worlds, count))
-    made = Simulation(Scene(radius, outline, grain, wall or grain, **scene), position, threads)
+    made = Simulation(scene_of(radius, outline, grain, wall or grain, **scene), position, threads)
     made.launch(np.array(velocity, dtype=float), np.array(spin, dtype=float))
     return made

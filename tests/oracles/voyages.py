@@ -21,7 +21,9 @@ def cargo_energy(run, snapshot, rows, motion):
     """Of the sheets (W,) J: kinetic with that of spin, potential, elastic."""
     speed, spin = earth(snapshot, motion)
     mass = run.grains.mass
-    kinetic = 0.5 * (mass[..., None] * speed**2).sum((1, 2)) + 0.2 * (mass * run.scene.radius**2 * spin**2).sum(1)
+    kinetic = 0.5 * (mass[..., None] * speed**2).sum((1, 2)) + 0.2 * (mass * run.scene.grains.radius**2 * spin**2).sum(
+        1
+    )
     return kinetic + rows["potential"] + rows["elastic"]
 
 

@@ -6,6 +6,7 @@ from lab.studies.verify.plain_water import PlainWater, kernel
 from solvers.fluid.given import Fluid, Water, particles
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 
 __all__ = ["GRAVITY", "PlainWater", "again", "box", "kernel", "lattice", "still"]
 
@@ -38,7 +39,7 @@ def still(width: float, height: float, depth: float, rows: int, **changes) -> Sc
     drops = lattice(width, depth, spacing, sound) if drops is None else drops
     water = Water(**{"spacing": spacing, "sound_speed": sound} | of_water)
     given = {"radius": np.zeros((len(drops), 0)), "outline": box(width, height), "gravity": GRAVITY}
-    return Scene(**{**given, "fluid": Fluid(water, drops), **changes})
+    return scene_of(**{**given, "fluid": Fluid(water, drops), **changes})
 
 
 def again(run: Simulation, scene: Scene) -> Simulation:

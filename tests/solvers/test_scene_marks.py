@@ -5,10 +5,12 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from solvers.grains.given import Grains
 from solvers.grains.materials import Material
-from solvers.machine.marks import EachWorld, LargestOfWorlds, marked
+from solvers.machine.marks import EachWorld, LargestOfWorlds, marked, shared
 from solvers.motion import MOTIONS
 from solvers.scene import Scene
+from tests.oracles.given import scene_of
 
 SOLID = Material(density=1000.0, young=1e7, poisson=0.3, friction=0.3, restitution=0.5)
 OUTLINE = [[-0.05, 0.0], [0.05, 0.0], [0.05, 0.1], [-0.05, 0.1]]
@@ -19,7 +21,7 @@ STILL = {"velocity": np.zeros((1, 3, 2)), "spin": np.zeros((1, 3))}
 def scene(**changes) -> Scene:
     tilt = MOTIONS["tilt"](rate=0.1, angle=0.5)
     settings = {"grain": SOLID, "wall": SOLID, "motions": [(tilt,)], "step": 1e-5, "sizes": (1e-3, 2e-3), **STILL}
-    return Scene(**{"radius": RADIUS, "outline": OUTLINE, **settings, **changes})
+    return scene_of(**{"radius": RADIUS, "outline": OUTLINE, **settings, **changes})
 
 
 DIFFER = {  # what worlds of one launch may differ in
@@ -57,15 +59,17 @@ AGREE = {  # what they must agree in
 
 @pytest.mark.parametrize("name", DIFFER)
 def test_worlds_that_differ_in_a_marked_field_share_a_launch(name):
-    assert name in marked(Scene, EachWorld) | marked(Scene, LargestOfWorlds)
+    kind = Grains if name in Grains.__dataclass_fields__ else Scene
+    assert name in marked(kind, EachWorld) | marked(kind, LargestOfWorlds)
     first, second = scene(), scene(**{name: DIFFER[name]})
     assert first.shared() == second.shared() and hash(first.shared()) == hash(second.shared())
     both = Scene.joined([first, second])
     assert both.worlds == 2
-    if name in marked(Scene, LargestOfWorlds):
-        assert getattr(both, name) == DIFFER[name]
+    found, given = (one.grains if kind is Grains else one for one in (both, second))
+    if name in marked(kind, LargestOfWorlds):
+        assert getattr(found, name) == DIFFER[name]
     else:
-        np.testing.assert_array_equal(getattr(both, name)[1], getattr(second, name)[0])
+        np.testing.assert_array_equal(getattr(found, name)[1], getattr(given, name)[0])
 
 
 @pytest.mark.parametrize("name", AGREE)
@@ -77,5 +81,6 @@ def test_worlds_that_differ_in_anything_else_do_not(name):
 
 
 def test_every_field_is_compared_or_marked():
-    compared = {field.name for field in fields(Scene) if field.init} - marked(Scene, LargestOfWorlds).keys()
-    assert len(scene().shared()) == len(compared)
+    for kind, told in ((Scene, scene().shared()), (Grains, shared(scene().grains))):
+        compared = {field.name for field in fields(kind) if field.init} - marked(kind, LargestOfWorlds).keys()
+        assert len(told) == len(compared)

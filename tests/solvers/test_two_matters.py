@@ -6,9 +6,9 @@ import pytest
 from solvers.fluid.given import Fluid, Water
 from solvers.grains.shapes.given import Shapes
 from solvers.machine import wide
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.tank import Tank
+from tests.oracles.given import scene_of
 from tests.oracles.outlines import ellipse
 from tests.oracles.scenes import box, material
 from tests.oracles.water import lattice
@@ -31,7 +31,7 @@ def beside(monkeypatch, lanes: int, rule: str | None = None, **scene) -> Simulat
     start = lattice(POOL, DEPTH, SPACING, 6.0)
     start["position"][..., 1] += 0.1
     fluid = Fluid(Water(SPACING, 6.0), start, (0, start.shape[1]))
-    made = Scene(
+    made = scene_of(
         np.full((1, len(place)), RADIUS), box(0.08, 0.08), material(), material(), stiffness_scale=1e-3,
         more_tanks=(above,), fluid=fluid, vessels=[ship()], **scene,
     )  # fmt: skip

@@ -44,13 +44,13 @@ class Again:
             self._simulation = None
 
     def _found(self, time: float, position: np.ndarray, angle: np.ndarray) -> list[Pressing]:
-        place, count = self._set_aside(position), len(self._scene.radius)
+        place, count = self._set_aside(position), self._scene.worlds
         if not place.size:
             return [UNTOUCHED] * count
         if self._simulation is None:
             self._simulation = Simulation(self._scene, place)
         made = self._simulation
-        if self._scene.shapes:
+        if self._scene.grains.shapes:
             made.grains.grains.start_angle = angle
         made.origin = time - made.time  # for the places of moving parts
         made.place(place)
@@ -66,6 +66,6 @@ class Again:
         if not gone.any():
             return position
         outline = self._scene.outline
-        steps = np.arange(position.shape[1]) * APART * self._scene.radius.max()
+        steps = np.arange(position.shape[1]) * APART * self._scene.grains.radius.max()
         high = outline.max(axis=0) + AWAY * np.ptp(outline, axis=0)
         return np.where(gone[..., None], high + steps[:, None] * np.array([1.0, 0.0]), position)

@@ -14,6 +14,7 @@ from lab.preset.outline import rectangle
 from lab.report.page import Page
 from lab.report.plots import BLUE, GREY, VERMILION
 from lab.studies.engine import Bench
+from solvers.grains.given import Grains
 from solvers.grains.materials import Material
 from solvers.grains.shapes.cargo import cargo
 from solvers.grains.shapes.contour import Contour
@@ -142,14 +143,16 @@ def collide(given: list[Contour], rule: str, nodes: int | None) -> np.ndarray:
     velocity = np.zeros_like(place)
     velocity[:, 0, 0], velocity[:, 1, 0] = SPEED, -SPEED
     scene = Scene(
-        np.full((PAIRS, 2), RADIUS),
         np.array(rectangle(0.1, 0.1)),
-        LOSSLESS,
-        LOSSLESS,
+        Grains(
+            np.full((PAIRS, 2), RADIUS),
+            LOSSLESS,
+            LOSSLESS,
+            shapes=shapes(given, rule, nodes, PAIRS, 2),
+            start_speed=SPEED,
+            velocity=velocity,
+        ),
         gravity=0.0,
-        shapes=shapes(given, rule, nodes, PAIRS, 2),
-        start_speed=SPEED,
-        velocity=velocity,
     )
     run = Simulation(scene, place, threads=1, arch="cpu")
     run.advance(1)
@@ -195,12 +198,14 @@ def bed(given: list[Contour], rule: str | None, nodes: int | None) -> Simulation
     place = pitch * (site - [0.5 * (columns - 1), -0.6]) + random.uniform(-1e-5, 1e-5, site.shape)
     high = place[:, 1].max() + 2.0 * pitch
     scene = Scene(
-        np.full((1, count), RADIUS),
         np.array(rectangle(width, high)),
-        SOFT,
-        SOFT,
-        tangential="mindlin",
-        shapes=None if rule is DISCS else shapes(given, rule, nodes, 1, count),
+        Grains(
+            np.full((1, count), RADIUS),
+            SOFT,
+            SOFT,
+            tangential="mindlin",
+            shapes=None if rule is DISCS else shapes(given, rule, nodes, 1, count),
+        ),
         schedule="per-world",
     )
     run = Simulation(scene, place[None], threads=1, arch="cpu")
@@ -209,7 +214,7 @@ def bed(given: list[Contour], rule: str | None, nodes: int | None) -> Simulation
 
 
 def _thrown(run: Simulation, speed: float) -> float:
-    velocity = np.zeros((*run.scene.radius.shape, 2))
+    velocity = np.zeros((*run.scene.grains.radius.shape, 2))
     velocity[..., 0] = speed
     run.launch(velocity)
     return _taken(run, round(THROWN / run.dt))

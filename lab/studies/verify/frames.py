@@ -136,7 +136,7 @@ def flight(_: bool) -> Found:
     place, velocity, spin = np.array([0.05, 0.6]), np.array([0.4, 0.8]), 7.0
     rows, tank = [grain(*place, RADIUS, *velocity, spin)], {"width": 1.2, "height": 1.2}
     with simulated(Setup(np.array(rows), SOFT, tank, motion=motion_tables())) as run:
-        again(run, run.snapshot()["position"], STEP, run.scene.velocity, run.scene.spin)
+        again(run, run.snapshot()["position"], STEP, run.scene.grains.velocity, run.scene.grains.spin)
         run.advance(round(FLIGHT / STEP))
         state, time = run.snapshot(), run.time
     origin, angle, carried, rate = pose(0.0)

@@ -83,11 +83,10 @@ def _materials(name: str) -> Callable[[Scene, float], dict]:
     """The same value for all grains and walls."""
 
     def changes(scene: Scene, value: float) -> dict:
-        return {
-            "grain": tuple(replace(material, **{name: value}) for material in scene.grain),
-            "wall": tuple(replace(material, **{name: value}) for material in scene.wall),
-            "others": tuple(replace(material, **{name: value}) for material in scene.others),
-        }
+        kinds = ("grain", "wall", "others")
+        now = {kind: getattr(scene.grains, kind) for kind in kinds}
+        with_it = {kind: tuple(replace(one, **{name: value}) for one in materials) for kind, materials in now.items()}
+        return {"grains": replace(scene.grains, **with_it)}
 
     return changes
 

@@ -30,6 +30,16 @@ def relaxed(position: np.ndarray, radius: np.ndarray, edges: np.ndarray, burstin
     return position
 
 
+def relaxed_start(scene, position: np.ndarray) -> np.ndarray:
+    """Positions (n, 2) m of the first world's grains of a `solvers.scene.Scene`, without excessive overlaps."""
+    grains, outline = scene.grains, scene.outline
+    edges = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
+    edges = np.delete(edges, list(scene.open_edges), axis=0)
+    lightest = grains.sizes[0], float(grains.density.min()), grains.interfaces[0].young_modulus, scene.gravity
+    overlaps = (lifting_overlap(share, *lightest) for share in (BURSTING, AT_REST))
+    return relaxed(position, grains.radius[0], edges, *overlaps)
+
+
 def lifting_overlap(share: float, radius: float, density: float, young_modulus: float, gravity: float) -> float:
     """Overlap ξ (m) of two grains whose elastic energy (2/5) k ξ^(5/2) is a share of that to lift one by its diameter.
 

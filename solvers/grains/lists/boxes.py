@@ -5,7 +5,7 @@ Grains that flow together hardly near each other, however far they go.
 
 import taichi as ti
 
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import Axis, State
 from solvers.space.axes import dot, named
 from solvers.space.cells import Cells
@@ -20,7 +20,7 @@ class Boxes:
     Cells are those of the time when candidates were sought. Fixed grains have gone nowhere.
     """
 
-    def __init__(self, arrays: State, grains: Grains, cells: Cells):
+    def __init__(self, arrays: State, grains: GrainState, cells: Cells):
         self.grains, self.cells = grains, cells
         own, axes = arrays.under("lists"), (Axis("world", grains.worlds), Axis("cell", cells.cells))
         self.low = own.reals(axes, *named("low", grains.axes), kept=False)

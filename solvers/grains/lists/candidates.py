@@ -10,7 +10,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.lists.boxes import Boxes
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.space.axes import dot, named
@@ -32,7 +32,7 @@ class Candidates:
         self,
         arrays: State,
         units: Units,
-        grains: Grains,
+        grains: GrainState,
         walls: Walls,
         farthest: float,
         room: int,

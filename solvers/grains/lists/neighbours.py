@@ -15,7 +15,7 @@ from solvers.grains.lists.candidates import Candidates
 from solvers.grains.lists.contact_list import ContactList
 from solvers.grains.lists.skin import Skin
 from solvers.grains.lists.wear import NEVER, Wear
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.space.axes import dot
@@ -42,7 +42,7 @@ class Neighbours:
         self,
         arrays: State,
         units: Units,
-        grains: Grains,
+        grains: GrainState,
         walls: Walls,
         reach: float,
         skin: Skin,

@@ -4,7 +4,7 @@ import numpy as np
 
 from solvers.grains.lists.contact_list import ContactList
 from solvers.grains.lists.neighbours import Neighbours
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.units import Units
 from solvers.space import order as spatial
@@ -17,7 +17,7 @@ class Numbering:
     are renumbered if `follows`.
     """
 
-    def __init__(self, arrays: State, grains: Grains, lists: Neighbours, diameter: float, follows: bool):
+    def __init__(self, arrays: State, grains: GrainState, lists: Neighbours, diameter: float, follows: bool):
         self.arrays, self.grains, self.lists, self.diameter = arrays, grains, lists, diameter
         self.follows = follows and grains.mobile >= spatial.FEWEST
         self.worlds = np.arange(grains.worlds)[:, None]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import State
 
 # Skins from and to, and up to where candidates are sought, in mean diameters; the skin over √(v Δt/d) for the fastest
@@ -42,9 +42,9 @@ def widths(scene, skin: float | None, single: bool, together: bool) -> Widths:
 
     Units of a `single` grain have no candidates; `together` is whether it is known how neighbours near each other.
     """
-    diameter = 2.0 * scene.mean_radius
-    if scene.shapes or single or skin:
-        least = skin or (LEAST_OF_CONVEX if scene.shapes and scene.shapes.convex else APART[0]) * diameter
+    diameter, shapes = 2.0 * scene.grains.mean_radius, scene.grains.shapes
+    if shapes or single or skin:
+        least = skin or (LEAST_OF_CONVEX if shapes and shapes.convex else APART[0]) * diameter
         return Widths(least, least, least if single else LISTS * least)
     least, most, farthest, keen = TOGETHER if together else APART
     return Widths(least * diameter, most * diameter, farthest * diameter, keen**2 * diameter * scene.time_step())
@@ -60,7 +60,14 @@ class Skin:
     """
 
     def __init__(
-        self, arrays: State, grains: Grains, widths: Widths, bridges: float, early: float, together: bool, moving: bool
+        self,
+        arrays: State,
+        grains: GrainState,
+        widths: Widths,
+        bridges: float,
+        early: float,
+        together: bool,
+        moving: bool,
     ):
         self.grains, self.widths, self.adapts = grains, widths, widths.most > widths.least
         self.together, (self.astray, self.parts) = together, ASTRAY if together else STRAIGHT

@@ -13,7 +13,7 @@ import taichi as ti
 
 from solvers.grains.lists.boxes import Boxes
 from solvers.grains.lists.skin import Skin
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.space.axes import dot, named
@@ -32,7 +32,7 @@ class Wear:
     past `due` (s), it must be looked at closer.
     """
 
-    def __init__(self, arrays: State, units: Units, grains: Grains, walls: Walls, skin: Skin, boxes: Boxes | None):
+    def __init__(self, arrays: State, units: Units, grains: GrainState, walls: Walls, skin: Skin, boxes: Boxes | None):
         self.units, self.grains, self.walls, self.skin = units, grains, walls, skin
         self.boxes, self.boxed = boxes, boxes is not None
         self.little = LITTLE[self.boxed]

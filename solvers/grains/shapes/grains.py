@@ -6,14 +6,14 @@ import taichi as ti
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.shapes.pose import posed
-from solvers.grains.state import Grains
+from solvers.grains.state import GrainState
 from solvers.machine.state import State
 
 DISC = Contour(1.0)
 
 
 @ti.data_oriented
-class ShapedGrains(Grains):
+class ShapedState(GrainState):
     """Grains whose outlines have the numbers `shape` (W, n + k + ghosts); fixed grains are discs, the last outline.
 
     Mass is that of the sphere of equal area, inertia that of `Contour.inertia`. `turn_y` and `turn_z` are cos and sin

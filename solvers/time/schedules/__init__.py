@@ -55,10 +55,9 @@ def check_cut(units: int, schedule: int, vectors: int, grains: int) -> None:
 
 def moved(scene) -> int:
     """Number of grains and of particles of water that are moved in a world; a liquid without particles has none."""
-    return scene.radius.shape[1] + (scene.fluid.moved if scene.fluid else 0)
+    return sum(matter.moved for matter in scene.matters)
 
 
 def work(scene) -> int:
     """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
-    flowing = scene.worlds * scene.fluid.moved // scene.fluid.pace if scene.fluid else 0
-    return max(scene.worlds, scene.radius.size + flowing)
+    return max(scene.worlds, sum(scene.worlds * matter.moved // matter.pace for matter in scene.matters))

@@ -15,6 +15,7 @@ from lab.preset.recorded import from_table, to_table
 from lab.preset.schema import Preset
 from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
 from solvers.grains.checks import DEEPEST_OVERLAP
+from solvers.grains.timestep import calm_speed
 from tests.oracles.presets import error_of
 
 SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"depth": "12 mm"}, "run": {"repeats": 2}}
@@ -57,10 +58,10 @@ def test_the_scene_has_the_range_of_its_sizes(keys, diameter, low, high):
     preset = resolved(grains=keys)
     scene, position = build(preset)
     assert preset.mean_diameter == pytest.approx(diameter)
-    assert scene.sizes == (pytest.approx(0.5 * low), pytest.approx(0.5 * high))
-    assert scene.sizes[0] <= scene.radius.min() and scene.radius.max() <= scene.sizes[1]
-    assert position.shape == (*scene.radius.shape, 2)
-    assert not np.array_equal(scene.radius[0], scene.radius[1])
+    assert scene.grains.sizes == (pytest.approx(0.5 * low), pytest.approx(0.5 * high))
+    assert scene.grains.sizes[0] <= scene.grains.radius.min() and scene.grains.radius.max() <= scene.grains.sizes[1]
+    assert position.shape == (*scene.grains.radius.shape, 2)
+    assert not np.array_equal(scene.grains.radius[0], scene.grains.radius[1])
 
 
 def test_the_accuracy_sets_stiffness_and_step_unless_the_preset_does():
@@ -70,9 +71,9 @@ def test_the_accuracy_sets_stiffness_and_step_unless_the_preset_does():
         for scale in (None, 3e-3)
     }
     for level, sets in LEVELS.items():
-        assert found[level, None].stiffness_scale == sets.stiffness_scale
-        assert found[level, 3e-3].stiffness_scale == 3e-3
-        longest = found[level, 3e-3].step_limits()[0].step * found[level, 3e-3].base_share * sets.longer_steps
+        assert found[level, None].grains.stiffness_scale == sets.stiffness_scale
+        assert found[level, 3e-3].grains.stiffness_scale == 3e-3
+        longest = found[level, 3e-3].step_limits()[0].step * found[level, 3e-3].grains.base_share * sets.longer_steps
         assert 0.99 * longest < found[level, 3e-3].step <= longest
     steps = [found[level, None].step for level in ("draft", "standard", "reference")]
     assert steps == sorted(steps, reverse=True)
@@ -86,16 +87,18 @@ def test_a_step_that_cannot_be_doubled_for_want_of_a_tenth_is_shortened_by_it():
     for scale in np.geomspace(1e-3, 1.0, 13):
         scene = build(resolved(run={"accuracy": "standard"}, contact={"stiffness_scale": float(scale)}))[0]
         derived, slowest = scene.step_limits()[0].step, scene.step_limits(0.0)[0].step
-        room, calm = slowest / derived, scene.calm_speed(2.0)
+        room, calm = slowest / derived, calm_speed(scene, 2.0)
         seen.add(np.digitize(room, (1.8, 2.0)))
         if 1.8 <= room < 2.0:
             assert 0.99 * slowest < 2.0 * scene.step <= slowest
             assert calm == pytest.approx(scene.credible_speed() * room**-5, rel=0.2)
         else:
-            assert scene.base_share == 1.0 and scene.step > 0.99 * derived and (calm > 0.0) == (room >= 2.0)
+            assert scene.grains.base_share == 1.0 and scene.step > 0.99 * derived and (calm > 0.0) == (room >= 2.0)
     assert seen == {0, 1, 2}
     afloat = build(load("ship/capsize-map", {"run.repeats": 1}).resolved)[0]
-    assert 1.8 < afloat.step_limits(0.0)[0].step / afloat.step_limits()[0].step < 2.0 and afloat.base_share == 1.0
+    assert (
+        1.8 < afloat.step_limits(0.0)[0].step / afloat.step_limits()[0].step < 2.0 and afloat.grains.base_share == 1.0
+    )
 
 
 def test_the_shares_of_a_table_add_up_to_one_and_may_be_any_numbers():
@@ -109,7 +112,7 @@ def test_the_shares_of_a_table_add_up_to_one_and_may_be_any_numbers():
 def test_the_surface_does_not_change_count_and_sizes(surface):
     plain, _ = build(resolved())
     scene, position = build(resolved(grains={"surface": surface}))
-    np.testing.assert_array_equal(scene.radius, plain.radius)
+    np.testing.assert_array_equal(scene.grains.radius, plain.grains.radius)
     again = build(resolved(grains={"surface": surface}))[1]
     np.testing.assert_array_equal(position, again)
     assert not np.array_equal(position[0], position[1])
@@ -122,7 +125,7 @@ def test_a_tank_without_lid_is_open_at_its_top_and_may_be_filled_to_it():
     assert scene.open_edges == (2,) and not resolved().tank.open_edges
     assert position[..., 1].max() > 0.03  # the lattice is looser than the bed
     top = filling_outline(preset)[:, 1].max()
-    assert np.all(position[..., 1] + scene.radius < top)
+    assert np.all(position[..., 1] + scene.grains.radius < top)
     assert np.ptp(scene.outline[:, 1]) == pytest.approx(0.03)
     assert np.abs(position[..., 0]).max() < 0.015
 
@@ -142,13 +145,13 @@ def test_a_closed_tank_is_filled_directly_if_there_is_room():
 def test_a_rough_tank_is_lined_with_the_same_grains_in_all_repeats():
     preset = resolved(tank={"roughness": "2 mm"})
     scene, position = build(preset)
-    np.testing.assert_array_equal(scene.fixed, fixed_grains(preset))
-    assert 2.0 * scene.fixed[:, 2].sum() == pytest.approx(0.09, rel=0.1)
-    apart = np.linalg.norm(position[:, :, None] - scene.fixed[:, :2], axis=-1)
-    assert np.all(apart > scene.radius[:, :, None] + scene.fixed[:, 2])
+    np.testing.assert_array_equal(scene.grains.fixed, fixed_grains(preset))
+    assert 2.0 * scene.grains.fixed[:, 2].sum() == pytest.approx(0.09, rel=0.1)
+    apart = np.linalg.norm(position[:, :, None] - scene.grains.fixed[:, :2], axis=-1)
+    assert np.all(apart > scene.grains.radius[:, :, None] + scene.grains.fixed[:, 2])
     assert grain_count(preset) < grain_count(resolved())
     other = fixed_grains(resolved(tank={"roughness": "2 mm"}, run={"seed": 7}))
-    assert not np.array_equal(other[: len(scene.fixed)], scene.fixed[: len(other)])
+    assert not np.array_equal(other[: len(scene.grains.fixed)], scene.grains.fixed[: len(other)])
 
 
 def test_listed_grains_start_as_given_in_the_file(tmp_path):
@@ -158,17 +161,17 @@ def test_listed_grains_start_as_given_in_the_file(tmp_path):
     preset = from_table(to_table(preset))  # complete without the file
     scene, position = build(preset)
     np.testing.assert_array_equal(position, [[[-0.005, 0.01], [0.005, 0.01]]] * 3)
-    np.testing.assert_array_equal(scene.radius, [[0.0015, 0.001]] * 3)
-    np.testing.assert_array_equal(scene.velocity, [[[0.3, 0.0], [0.0, -0.4]]] * 3)
-    np.testing.assert_array_equal(scene.spin, [[2.0, 0.0]] * 3)
-    assert scene.start_speed == pytest.approx(0.5) and scene.sizes == (0.001, 0.0015)
+    np.testing.assert_array_equal(scene.grains.radius, [[0.0015, 0.001]] * 3)
+    np.testing.assert_array_equal(scene.grains.velocity, [[[0.3, 0.0], [0.0, -0.4]]] * 3)
+    np.testing.assert_array_equal(scene.grains.spin, [[2.0, 0.0]] * 3)
+    assert scene.grains.start_speed == pytest.approx(0.5) and scene.grains.sizes == (0.001, 0.0015)
     assert (grain_count(preset), preset.grains.bed.name) == (2, "bed.csv")
 
 
 def test_listed_grains_may_settle_and_lie_against_each_other_and_the_walls(tmp_path):
     rows = ["-0.0135,0.0015,0.0015", "-0.0105,0.0015,0.0015", "-0.012,0.00409,0.0015"]  # the third sunk in by 1e-6 m
     scene, _ = build(resolved(grains=csv(tmp_path, *rows, header="y,z,radius")))
-    assert scene.velocity is None and scene.spin is None and scene.start_speed == 0.0
+    assert scene.grains.velocity is None and scene.grains.spin is None and scene.grains.start_speed == 0.0
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,7 @@ def test_forces_found_again_are_those_of_the_run():
     made = Simulation(scene, position, threads=1)
     made.advance(round(0.12 / made.dt))
     snapshot = {name: values.astype(np.float32).astype(float) for name, values in made.snapshot().items()}
-    told, radius, outline = made.pressing(), scene.radius, scene.outline
+    told, radius, outline = made.pressing(), scene.grains.radius, scene.outline
     made.close()
 
     class Recorded:

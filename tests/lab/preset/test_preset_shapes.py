@@ -137,8 +137,8 @@ def test_an_outline_from_a_file_is_found_beside_its_preset(tmp_path):
 def test_shares_by_mass_are_those_of_the_masses():
     preset = resolved(TWO, grains={"shares": "mass", "count": 4000}, tank={"width": "1 m", "height": "1 m"})
     scene = build(preset)[0]
-    mass = scene.radius**3
-    rough = classes(preset)[scene.shapes.which] == 1
+    mass = scene.grains.radius**3
+    rough = classes(preset)[scene.grains.shapes.which] == 1
     np.testing.assert_allclose((mass * rough).sum(axis=1) / mass.sum(axis=1), 0.75, atol=0.01)
     numbers = [shape.share for shape in preset.shape_classes.values()]
     np.testing.assert_allclose(numbers, np.array([1 / 27, 3 / 125]) / (1 / 27 + 3 / 125))
@@ -148,20 +148,20 @@ def test_shares_by_mass_are_those_of_the_masses():
 def test_shares_by_number_are_those_of_the_numbers():
     preset = resolved(TWO)
     scene = build(preset)[0]
-    np.testing.assert_array_equal((classes(preset)[scene.shapes.which] == 1).sum(axis=1), [30, 30])
+    np.testing.assert_array_equal((classes(preset)[scene.grains.shapes.which] == 1).sum(axis=1), [30, 30])
 
 
 def test_sizes_are_spread_about_those_of_the_classes():
     preset = resolved(TWO, grains={"spread": 0.1})
     scene = build(preset)[0]
-    of_class = np.array([1.5e-3, 2.5e-3])[classes(preset)[scene.shapes.which]]
-    relative = scene.radius / of_class
+    of_class = np.array([1.5e-3, 2.5e-3])[classes(preset)[scene.grains.shapes.which]]
+    relative = scene.grains.radius / of_class
     assert 0.9 <= relative.min() < 0.93 and 1.07 < relative.max() <= 1.1
-    np.testing.assert_allclose(scene.sizes, [1.35e-3, 2.75e-3])
+    np.testing.assert_allclose(scene.grains.sizes, [1.35e-3, 2.75e-3])
 
 
 def test_the_outlines_are_centred_and_as_large_as_a_disc_of_radius_one():
-    shapes = build(resolved(TWO))[0].shapes
+    shapes = build(resolved(TWO))[0].grains.shapes
     assert len(shapes.outlines) == 1 + 2 * 25
     for outline in shapes.outlines:
         assert outline.equivalent_radius == pytest.approx(1.0, rel=1e-12)
@@ -171,20 +171,20 @@ def test_the_outlines_are_centred_and_as_large_as_a_disc_of_radius_one():
 def test_each_repeat_is_drawn_from_its_own_seed():
     both, later = build(resolved(TWO)), build(resolved(TWO, run={"seed": 2, "repeats": 1}))
     (two, places), (one, place) = both, later
-    np.testing.assert_array_equal(two.radius[1], one.radius[0])
-    np.testing.assert_array_equal(two.shapes.angle[1], one.shapes.angle[0])
+    np.testing.assert_array_equal(two.grains.radius[1], one.grains.radius[0])
+    np.testing.assert_array_equal(two.grains.shapes.angle[1], one.grains.shapes.angle[0])
     np.testing.assert_array_equal(places[1], place[0])
-    assert [two.shapes.outlines[k] for k in two.shapes.which[1]] == [
-        one.shapes.outlines[k] for k in one.shapes.which[0]
+    assert [two.grains.shapes.outlines[k] for k in two.grains.shapes.which[1]] == [
+        one.grains.shapes.outlines[k] for k in one.grains.shapes.which[0]
     ]
-    assert set(two.shapes.outlines[1:26]).isdisjoint(two.shapes.outlines[26:])
-    assert not np.array_equal(two.shapes.angle[0], two.shapes.angle[1])
+    assert set(two.grains.shapes.outlines[1:26]).isdisjoint(two.grains.shapes.outlines[26:])
+    assert not np.array_equal(two.grains.shapes.angle[0], two.grains.shapes.angle[1])
 
 
 def test_the_same_outlines_come_from_the_preset_as_it_is_recorded():
     preset = resolved(TWO, grains={"orientation": "30 deg"}, contact={"outlines": "nodes", "nodes": 60})
     table = to_table(preset)
-    here, there = build(preset)[0].shapes, build(from_table(table))[0].shapes
+    here, there = (build(one)[0].grains.shapes for one in (preset, from_table(table)))
     assert len(json.dumps(table)) < 10_000
     assert here.outlines == there.outlines and (here.contact, here.nodes) == ("nodes", 60)
     np.testing.assert_array_equal(here.which, there.which)
@@ -208,7 +208,10 @@ def test_no_outline_exceeds_the_largest_radius_of_its_class():
 def test_grains_start_far_enough_apart_to_turn(sections):
     preset = resolved({"rice": {"cargo": "rice", "diameter": "4 mm"}, "disc": {"disc": True}}, **sections)
     scene, position = build(preset)
-    reach = scene.radius * np.array([outline.bounding_radius for outline in scene.shapes.outlines])[scene.shapes.which]
+    reach = (
+        scene.grains.radius
+        * np.array([outline.bounding_radius for outline in scene.grains.shapes.outlines])[scene.grains.shapes.which]
+    )
     raised = filling_outline(preset)
     for places, bound in zip(position, reach, strict=True):
         pairs = cKDTree(places).query_pairs(2.0 * bound.max(), output_type="ndarray")
@@ -221,7 +224,7 @@ def test_grains_start_far_enough_apart_to_turn(sections):
 def test_a_depth_is_filled_by_area():
     shapes = {"rice": {"cargo": "rice", "diameter": "4 mm"}}
     preset = resolved(shapes, grains={"depth": "20 mm", "count": False})
-    area = grain_count(preset) * build(preset)[0].shapes.outlines[0].with_diameter(4e-3).area
+    area = grain_count(preset) * build(preset)[0].grains.shapes.outlines[0].with_diameter(4e-3).area
     assert area == pytest.approx(0.81 * 60e-3 * 20e-3, rel=0.01)
 
 
@@ -244,8 +247,8 @@ def test_a_run_records_its_outlines(tmp_path):
     run.make_recording()
     with open_recording(tmp_path) as recording:
         shapes = recording.shapes
-        assert shapes.contours == run.scene.shapes.outlines
-        np.testing.assert_array_equal(shapes.which, run.scene.shapes.which)
+        assert shapes.contours == run.scene.grains.shapes.outlines
+        np.testing.assert_array_equal(shapes.which, run.scene.grains.shapes.which)
         np.testing.assert_array_equal(shapes.kind, classes(preset.resolved))
 
 
@@ -274,7 +277,7 @@ def picture(folder, shapes: dict, angle: float = 0.0) -> np.ndarray:
     """The picture of a bed as it starts, its grains all turned by this angle (rad)."""
     run = prepare(loaded(shapes, run={"repeats": 1}, grains={"diameter": "6 mm"}), folder)
     run.make_recording()
-    worlds, count = run.scene.radius.shape
+    worlds, count = run.scene.grains.radius.shape
     with Recorder(folder) as recorder:
         recorder.sample(sample(0.0, worlds))
         turned = {"position": run.position, "angle": np.full((worlds, count), angle)}

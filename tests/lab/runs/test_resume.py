@@ -266,15 +266,16 @@ def test_a_damaged_checkpoint_is_refused_in_one_sentence(tmp_path):
     assert refused > 1500
 
 
-@pytest.mark.parametrize(("place", "number"), [(4, 0), (4, 10**9), (4, 17), (5, 3), (6, 10**9), (6, 3), (1, 3)])
-def test_a_checkpoint_that_asks_for_another_cut_is_refused(done, tmp_path, place, number):
+CUTS = {"units": (0, 10**9, 17), "schedule": (3,), "vectors": (10**9, 3), "room": (3,)}
+
+
+@pytest.mark.parametrize(("name", "number"), [(name, number) for name, cuts in CUTS.items() for number in cuts])
+def test_a_checkpoint_that_asks_for_another_cut_is_refused(done, tmp_path, name, number):
     """Its units a world, schedule, lanes and room for contacts decide how large arrays are."""
     _, cut, _ = done
     folder = shutil.copytree(cut, tmp_path / "run")
     kept = read_checkpoint(folder)
-    numbers = kept.state["numbers"].copy()
-    numbers[place] = number
-    replace(kept, state={**kept.state, "numbers": numbers}).write(folder)
+    replace(kept, state={**kept.state, f"run.{name}": np.array(number)}).write(folder)
     with pytest.raises(LabError, match="its checkpoint is of another scene: start the run again"):
         resume_run(folder, video=False, quiet=True)
 

@@ -83,9 +83,9 @@ def test_a_world_settles_alone_as_with_other_worlds():
     (alone, start), (among, starts) = (
         build(load("tilting/quick", SMALL | {"run": {"repeats": n, "step": "auto"}}).resolved) for n in (1, 3)
     )
-    assert np.array_equal(start[0], starts[0]) and np.array_equal(alone.radius[0], among.radius[0])
-    assert alone.step == among.step and alone.interfaces == among.interfaces
-    assert not np.array_equal(among.radius[0], among.radius[1])
+    assert np.array_equal(start[0], starts[0]) and np.array_equal(alone.grains.radius[0], among.grains.radius[0])
+    assert alone.step == among.step and alone.grains.interfaces == among.grains.interfaces
+    assert not np.array_equal(among.grains.radius[0], among.grains.radius[1])
 
 
 @pytest.mark.parametrize(
@@ -189,7 +189,7 @@ def test_the_first_sample_is_the_state_of_grains_that_do_not_settle(tmp_path, sh
     result = run_preset("tilting/quick", given, tmp_path / "run", video=False, plots=False, quiet=True)
     series = {name: values[0] for name, values in result.recording.series.items()}
     mass = 4 / 3 * np.pi * 0.003**3 * preset.material.density
-    floor = build(preset)[0].interfaces[1]
+    floor = build(preset)[0].grains.interfaces[1]
     force = 4 / 3 * floor.young_modulus * np.sqrt(0.003) * 2e-6**1.5  # Hertz (1882); the grain does not approach
     assert series["contacts"] == [1.0]
     assert series["overlap"] == pytest.approx([2e-6 / 0.003], rel=1e-6)

@@ -241,7 +241,7 @@ def test_the_lammps_input_has_the_equivalent_viscoelastic_law(bed, monkeypatch):
     mass = 4.0 / 3.0 * pi * radius**3 * ACETATE.density
     for line, between, m_eff in zip(
         ("pair_style gran/hertz/history", "fix sides all wall/gran hertz/history"),
-        scene.interfaces,
+        scene.grains.interfaces,
         (mass / 2, mass),
         strict=True,
     ):

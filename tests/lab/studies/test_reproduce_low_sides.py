@@ -47,8 +47,8 @@ def test_the_lever_is_that_of_a_box_until_the_deck_is_wet():
 def test_the_heap_has_the_mass_of_the_bed():
     """Grains of 6 mm, equally spread by a tenth about it: their mean cube is d³ (1 + 0.1²); a sheet of 6 mm."""
     resolved = load(low_sides.PRESET).resolved
-    (grains, _) = build(resolved)
-    mass = (4.0 / 3.0 * np.pi * grains.radius**3).sum() * 1319.0 / 0.006
+    scene, _ = build(resolved)
+    mass = (4.0 / 3.0 * np.pi * scene.grains.radius**3).sum() * 1319.0 / 0.006
     assert low_ship().heap.mass == pytest.approx(mass, rel=0.02)
 
 

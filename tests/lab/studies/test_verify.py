@@ -153,7 +153,7 @@ def test_a_level_sets_the_steps_of_setups_and_not_their_stiffness():
     with at_level("draft"):
         draft, _ = setup.build()
     assert draft.step == pytest.approx(1.6 * derived.step, rel=1e-3)
-    assert draft.stiffness_scale == derived.stiffness_scale == 1.0
+    assert draft.grains.stiffness_scale == derived.grains.stiffness_scale == 1.0
     suite = verify.suite_at("draft")
     assert suite.name == "verify-draft" and suite.command == "verify --level draft"
     assert {"friction-cap", "incline"} <= {case.name for case in suite.cases} < {case.name for case in verify.CASES}

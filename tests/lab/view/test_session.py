@@ -60,8 +60,8 @@ def opened(monkeypatch, tmp_path):
     live = steerable(loaded)
     scene, place = build(live.resolved)
     preset = live.resolved
-    plain = np.zeros(scene.radius.shape, dtype=int), scene.outline, (), scene.fixed, {}, None, 1e-5
-    scenery = Scenery(preset, PRESET, tmp_path, scene.radius, *plain)
+    plain = np.zeros(scene.grains.radius.shape, dtype=int), scene.outline, (), scene.grains.fixed, {}, None, 1e-5
+    scenery = Scenery(preset, PRESET, tmp_path, scene.grains.radius, *plain)
     pipes[-1].send(("ready", (scenery, own_motion(loaded.resolved))))
     for k in range(5):
         pipes[-1].send(("frame", (seen(place, 0.1 * k), 0.5)))

@@ -15,6 +15,7 @@ from solvers.motion.harmonic import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.air import again, both, filled, follows_double_sums, held
+from tests.oracles.given import scene_of
 from tests.oracles.water import GRAVITY, box
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
@@ -267,7 +268,7 @@ def test_tension_keeps_momentum():
     places[:, 0] -= 0.5
     gas = np.hypot(places[:, 0] / 0.31, (places[:, 1] - 0.5) / 0.2) > 1.0
     fluid = Fluid(water, filled(places, gas.astype(float), 1.0 / 576.0))
-    run = Simulation(Scene(np.zeros((1, 0)), box(1.0, 1.0), gravity=0.0, fluid=fluid), threads=1)
+    run = Simulation(scene_of(np.zeros((1, 0)), box(1.0, 1.0), gravity=0.0, fluid=fluid), threads=1)
     run.advance(300)
     _, velocity, _, mass, *_ = held(run)
     assert np.abs(mass @ velocity).max() < 1e-12 * (mass @ np.hypot(*velocity.T))

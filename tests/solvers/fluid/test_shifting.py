@@ -6,6 +6,7 @@ import pytest
 from solvers.fluid.given import Fluid, Water, particles
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.water import box
 
 ACROSS, RATE, FORWARD = 20, 1.0, 0.4  # particles; rad/s, m/s
@@ -20,7 +21,7 @@ def patch(shifting: str) -> Scene:
     drops["position"][0], drops["volume"] = place + np.array([0.0, 2.0]), spacing**2
     drops["velocity"][0, :, 0], drops["velocity"][0, :, 1] = FORWARD - RATE * place[:, 1], RATE * place[:, 0]
     water = Water(spacing, 10.0, walls=False, shifting=shifting, speed=1.0)
-    return Scene(radius=np.zeros((1, 0)), outline=box(4.0, 4.0), fluid=Fluid(water, drops), gravity=0.0)
+    return scene_of(radius=np.zeros((1, 0)), outline=box(4.0, 4.0), fluid=Fluid(water, drops), gravity=0.0)
 
 
 def kept(run: Simulation) -> tuple[np.ndarray, float]:

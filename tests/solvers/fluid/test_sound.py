@@ -7,6 +7,7 @@ from solvers.fluid.given import Fluid, Water
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 
 DEPTH, WIDTH, ROWS, G = 0.3, 0.3, 40, 9.81
 SOUND = 10.0 * np.sqrt(G * DEPTH)
@@ -27,7 +28,7 @@ def ringing(**models) -> Scene:
     mass = (1.0 + drops["excess"]) * drops["volume"]
     drops["excess"] += SHARE * shape(drops["position"][..., 1])
     drops["volume"] = mass / (1.0 + drops["excess"])
-    return Scene(radius=np.zeros((1, 0)), outline=OUTLINE, fluid=Fluid(water, drops), gravity=G)
+    return scene_of(radius=np.zeros((1, 0)), outline=OUTLINE, fluid=Fluid(water, drops), gravity=G)
 
 
 def swings(scene: Scene) -> tuple[float, float]:

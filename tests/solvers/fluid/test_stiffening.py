@@ -11,6 +11,7 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.time.changes import up_to_change
 from tests.oracles.air import both, filled
+from tests.oracles.given import scene_of
 from tests.oracles.water import GRAVITY, again, box
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
@@ -156,7 +157,7 @@ def test_momentum_is_kept_over_the_moment():
     drops = filled(places, (places[:, 1] > 0.5).astype(float), 1.0 / 576.0)
     drops["velocity"] = 0.1 * np.random.default_rng(5).uniform(-1.0, 1.0, drops["position"].shape)
     given = {"outline": box(1.0, 1.0), "gravity": 0.0, "fluid": Fluid(water, drops)}
-    made = Scene(np.zeros((1, 0)), **given)
+    made = scene_of(np.zeros((1, 0)), **given)
     made.fluid = replace(made.fluid, soft_stride=STRIDE)
     made.step = min(made.longest_step(1.0), soft_limit(made, 1.0) / STRIDE)
     run = Simulation(made, threads=1, arch="cpu")

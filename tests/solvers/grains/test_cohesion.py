@@ -12,6 +12,7 @@ from solvers.grains.laws.humid import kelvin_radius
 from solvers.grains.materials import hertz_stiffness
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material, simulation
 
 RADIUS, TENSION, ANGLE, VOLUME = 1.5e-3, 0.072, 0.4, 2e-12
@@ -71,7 +72,7 @@ def launch(run: Simulation, gap: np.ndarray, speed: float, step: float) -> None:
 def test_contact_and_rupture_cost_the_work_of_the_bridge(elastic, share):
     """Of the derived step; wherever in it the touch. In one step grains in humid air go past the whole range."""
     run, step = elastic
-    law = run.scene.cohesion
+    law = run.scene.grains.cohesion
     speed, gap = SLOW[law], np.random.default_rng(7).uniform(1e-6, 2e-6, WORLDS)
     launch(run, gap, speed, share * step)
     run.advance(int((2.0 * RANGE[law] / speed * 2.0 + 8e-6 / speed + 2e-4) / run.dt))
@@ -93,7 +94,7 @@ def test_bridges_are_longer_than_the_skin_of_lists():
     law, speed = "bridge", SLOW["bridge"]
     laws = {"normal": "hertz", "tangential": "none", "gravity": 0.0, "cohesion": law, "start_speed": speed}
     place = np.tile([[-2 * RADIUS, 0.5], [2 * RADIUS, 0.5], [0.3, 0.3]], (WORLDS, 1, 1))
-    scene = Scene(np.full((WORLDS, 3), RADIUS), box(1.0, 1.0), wet(), wet(), **laws)
+    scene = scene_of(np.full((WORLDS, 3), RADIUS), box(1.0, 1.0), wet(), wet(), **laws)
     run = Simulation(scene, place, 1, skin=RANGE[law] / 30)
     launch(run, np.full(WORLDS, 2e-6), speed, run.dt)
     run.advance(int((4.0 * RANGE[law] / speed + 3e-4) / run.dt))
@@ -129,7 +130,7 @@ def test_softened_grains_lose_the_work_of_a_bridge_in_the_mean(law):
 def test_energy_is_conserved_while_a_bridge_exists(elastic):
     """Grains too slow to part swing about each other; what is told as stored counts the bridges."""
     run, step = elastic
-    law = run.scene.cohesion
+    law = run.scene.grains.cohesion
     speed = 0.6 * sqrt(4 * work(law, RADIUS / 2) / MASS)
     launch(run, np.full(WORLDS, 1e-10), speed, 0.2 * step)
     start, stored, moving = 0.75 * MASS * speed**2, [], []
@@ -175,8 +176,8 @@ def test_kelvin_radius_is_that_of_the_source():
 def coefficients(**changes) -> list[float]:
     """Of the law for humid air, between two grains."""
     grain = wet(**changes)
-    scene = Scene(np.full((1, 2), RADIUS), box(0.1, 0.1), grain, grain, cohesion="humid")
-    return scene.laws[3].coefficients(scene.interfaces[0])
+    scene = scene_of(np.full((1, 2), RADIUS), box(0.1, 0.1), grain, grain, cohesion="humid")
+    return scene.grains.laws[3].coefficients(scene.grains.interfaces[0])
 
 
 def test_asperities_prevent_bridges_in_dry_air():
@@ -197,7 +198,7 @@ def clump(skin: float | None = None, schedule: str = "per-world", units: int = 1
     velocity = 20.0 * (place - [0.0, 4 * RADIUS]) + rng.normal(0.0, 0.02, place.shape)
     grain = wet(young=4e6)
     laws = {"tangential": "mindlin", "cohesion": "bridge", "schedule": schedule, "precision": precision}
-    scene = Scene(np.full((worlds, count), RADIUS), box(0.04, 0.1), grain, grain, step=1e-5, **laws)
+    scene = scene_of(np.full((worlds, count), RADIUS), box(0.04, 0.1), grain, grain, step=1e-5, **laws)
     run = Simulation(scene, place, 2, skin, arch="cpu", units=units)
     if schedule == "per-band":
         run.schedule.together = False  # spinning on shared cores takes its time
@@ -254,7 +255,7 @@ def test_the_oscillation_on_a_bridge_bounds_the_step_of_tiny_grains(law):
 
     def scene(radius: float, cohesion: str) -> Scene:
         laws = {"cohesion": cohesion, "stiffness_scale": 1e-3, "gravity": 1e-9}
-        return Scene(np.full((1, 2), radius), box(0.1, 0.1), wet(), wet(), **laws)
+        return scene_of(np.full((1, 2), radius), box(0.1, 0.1), wet(), wet(), **laws)
 
     assert scene(RADIUS, law).time_step() == scene(RADIUS, "none").time_step()
     tiny = 2e-6

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from solvers.grains.laws import NORMAL, ROLLING, TANGENTIAL
-from solvers.scene import Scene
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material, simulation
 
 RADIUS, DENSITY = 1.5e-3, 1319.0
@@ -138,11 +138,13 @@ def expected(law: str, size: float, wall: bool, e: float, speed: float) -> tuple
 
 def test_restitution_and_duration_at_the_automatic_step(bench):
     """To 0.1 %, wherever in a step the contact begins, for grains of three sizes against each other and a wall."""
-    law = bench.scene.normal
+    law = bench.scene.grains.normal
     sizes = RADIUS * SIZES[0], RADIUS * SIZES[-1]
     for e, speed in product(RESTITUTIONS, SPEEDS):
         grain = material(restitution=e)
-        alone = Scene(bench.scene.radius[:1], OUTLINE, grain, grain, law, gravity=0.0, start_speed=speed, sizes=sizes)
+        alone = scene_of(
+            bench.scene.grains.radius[:1], OUTLINE, grain, grain, law, gravity=0.0, start_speed=speed, sizes=sizes
+        )
         bench.dt = alone.time_step()
         gap = meeting(bench, speed)
         references = {(size, wall): expected(law, size, wall, e, speed) for size in SIZES for wall in (False, True)}
@@ -172,7 +174,7 @@ def momenta(run) -> np.ndarray:
     """Linear (N s) and angular (N m s) momentum (3, W) of the worlds' grains."""
     state, mass = run.snapshot(), run.grains.mass
     r, v = state["position"] - PLACE, state["velocity"]
-    spins = 0.4 * mass * run.scene.radius**2 * state["spin"]
+    spins = 0.4 * mass * run.scene.grains.radius**2 * state["spin"]
     angular = mass * (r[..., 0] * v[..., 1] - r[..., 1] * v[..., 0]) + spins
     return np.array([*np.moveaxis((mass[..., None] * v).sum(axis=1), -1, 0), angular.sum(axis=1)])
 
@@ -198,7 +200,7 @@ def test_energy_never_increases_and_momentum_is_kept(bench):
     rows = bench.observe()
     assert np.all(rows["elastic"] == 0.0)
     last = total_energy(rows)
-    if bench.scene.normal == "hertz":
+    if bench.scene.grains.normal == "hertz":
         assert last == pytest.approx(energy[0], rel=1e-3)
     else:
         assert np.all(last <= energy[0] * (1 + 1e-4))

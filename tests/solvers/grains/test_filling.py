@@ -8,9 +8,9 @@ import pytest
 from solvers.grains.bed.filling import DoesNotFit, _inside, count_for_depth, headroom, levelled, radii, start_positions
 from solvers.grains.bed.sizes import Sizes
 from solvers.motion import Sway
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.outline import lining, raised
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 
@@ -199,7 +199,9 @@ def test_a_bed_settles_to_the_requested_depth():
     position = np.stack([start_positions(radius[w], outline, random[w]) for w in range(2)])
     grain = material(restitution=0.5)
     motions = [(Sway(amplitude=0.05, frequency=3.0, phase=1.0),)] * 2
-    run = Simulation(Scene(radius, outline, grain, grain, stiffness_scale=1e-3, motions=motions), position, threads=1)
+    run = Simulation(
+        scene_of(radius, outline, grain, grain, stiffness_scale=1e-3, motions=motions), position, threads=1
+    )
 
     assert not run.settle(rest, 0.02)
     told = []

@@ -5,6 +5,7 @@ import pytest
 
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 from tests.solvers.grains.test_collisions import rebound
 
@@ -31,7 +32,7 @@ def struck(request):
     velocity = np.zeros(place.shape)
     velocity[:, :2] = SPEEDS[:, None, None] * ways * [[1.0], [SLOWER]]
     grain, wall = material(young=1e9, friction=FRICTION), material(young=5e6, friction=0.7, restitution=0.2)
-    scene = Scene(
+    scene = scene_of(
         np.full((worlds, 3), RADIUS),
         box(0.1, 0.06),
         grain,
@@ -59,7 +60,7 @@ def restitution(scene: Scene, mass: float, speed: float) -> float:
 
     By integration of the law with x = (3/2) A (k/m)^(2/5) v^(1/5).
     """
-    pair = scene.interfaces[0]
+    pair = scene.grains.interfaces[0]
     k = 4.0 / 3.0 * pair.young_modulus * np.sqrt(RADIUS * LARGE / (RADIUS + LARGE))
     return rebound(0.5, 1.5 * pair.dissipative_time * (k / mass) ** 0.4 * speed**0.2)[0]
 

@@ -65,7 +65,7 @@ def slipping(request):
 
 def slides_until_it_rolls(run, states) -> None:
     """A sphere set sliding rolls in the end at 5/7 of its speed, whatever the friction (Euler); before, at −μ g."""
-    law, end = run.scene.tangential, states[0.15]
+    law, end = run.scene.grains.tangential, states[0.15]
     if law == "none":
         assert end["velocity"][0, 0, 0] == SPEED and end["spin"][0, 0] == 0.0
         return
@@ -77,7 +77,7 @@ def slides_until_it_rolls(run, states) -> None:
 
 def rolls_down_the_slope(run, states) -> None:
     """Without slip it gains (5/7) g sin θ t; with too little friction it slides and gains g(sin θ − μ cos θ) t."""
-    law = run.scene.tangential
+    law = run.scene.grains.tangential
     rolls = G * np.sin(SLOPE) * (1.0 if law == "none" else 5 / 7)
     slides = {"none": rolls, "viscous": rolls}.get(law, G * (np.sin(SLOPE) - 0.05 * np.cos(SLOPE)))
     for world, pull in ((0, rolls), (1, slides)):
@@ -93,8 +93,8 @@ def test_sliding_and_rolling(slipping):
 def test_a_held_load_creeps_at_the_rate_of_its_law(slipping):
     """m g/(2 γ_s) with a damper, 1e-6 m/s times m g/(2 μ F_n) on Coulomb's ramp; a spring with history holds still."""
     run, states = slipping
-    law, mass = run.scene.tangential, run.grains.mass[0, 0]
-    k = 4 / 3 * run.scene.interfaces[1].young_modulus * np.sqrt(RADIUS)
+    law, mass = run.scene.grains.tangential, run.grains.mass[0, 0]
+    k = 4 / 3 * run.scene.grains.interfaces[1].young_modulus * np.sqrt(RADIUS)
     squeeze = k * (0.002 * RADIUS) ** 1.5
     for world, damping in ((0, DAMPING), (2, DAMPING / 4)):
         down = (states[0.1]["position"] - states[0.15]["position"])[world, 2, 1] / 0.05
@@ -119,7 +119,7 @@ def creep_does_not_depend_on_the_step(run, states) -> None:
         down.append(run.snapshot()["position"][0, 2, 1])
     run.dt *= 2.0
     coarse = (states[0.1]["position"] - states[0.15]["position"])[0, 2, 1]
-    if run.scene.tangential != "none":
+    if run.scene.grains.tangential != "none":
         assert down[0] - down[1] == pytest.approx(coarse, rel=1e-2, abs=1e-9)
 
 
@@ -135,7 +135,7 @@ def test_column_carries_its_weight_and_rests(law):
     above = run.grains.mass[0, 0] * G * np.arange(count, 0, -1)
     z = run.snapshot()["position"][0, :, 1]
     overlap = np.array([radius - z[0], *(2 * radius - np.diff(z))])
-    pair, wall = run.scene.interfaces
+    pair, wall = run.scene.grains.interfaces
     k = (
         4
         / 3

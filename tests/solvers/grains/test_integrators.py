@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 from tests.solvers.grains.test_collisions import rebound
 
@@ -34,7 +34,7 @@ def bench(request):
     """Four worlds of two grains under one integrator."""
     materials = [SOFT, SOFT, LOSSY, SOFT]
     place = np.tile([[0.0, R], [0.05, 0.06]], (4, 1, 1))
-    scene = Scene(
+    scene = scene_of(
         np.full((4, 2), R),
         box(0.2, 0.1),
         materials,
@@ -50,7 +50,7 @@ def bench(request):
 
 def carrying(run: Simulation) -> tuple[float, float, float]:
     """k/m (1/(s² √m)) of grain and floor, the overlap (m) that carries the weight, the period (s) of small swings."""
-    k = 4.0 / 3.0 * run.scene.interfaces_of[LET_GO][1].young_modulus * np.sqrt(R) / run.grains.mass[0, 0]
+    k = 4.0 / 3.0 * run.scene.grains.interfaces_of[LET_GO][1].young_modulus * np.sqrt(R) / run.grains.mass[0, 0]
     overlap = (G / k) ** (2.0 / 3.0)
     return k, overlap, 2.0 * np.pi * np.sqrt(overlap / (1.5 * G))
 
@@ -100,8 +100,8 @@ def test_order_on_a_smooth_contact(bench):
     """Halving the step divides the error by two to the order."""
     found = np.array([errors(bench, share) for share in SHARES])
     orders = np.log2(found[:-1] / found[1:])
-    assert orders[-1] == pytest.approx(ORDERS[bench.scene.integrator], abs=0.2, rel=0.1)
-    assert found[-1].max() < NEAREST[bench.scene.integrator]
+    assert orders[-1] == pytest.approx(ORDERS[bench.scene.grains.integrator], abs=0.2, rel=0.1)
+    assert found[-1].max() < NEAREST[bench.scene.grains.integrator]
 
 
 def test_energy_of_a_lasting_contact(bench):
@@ -119,7 +119,7 @@ def test_energy_of_a_lasting_contact(bench):
         bench.advance(40 * 39)
     rest = G * (R - overlap) + 0.4 * k * overlap**2.5
     drift = (np.array(energies) - energies[0]) / (energies[0] - rest)
-    assert np.abs(drift).max() < DRIFTS[bench.scene.integrator]
+    assert np.abs(drift).max() < DRIFTS[bench.scene.grains.integrator]
 
 
 def test_collision_and_flight(bench):
@@ -127,17 +127,17 @@ def test_collision_and_flight(bench):
 
     Symplectic Euler's restitution is of first order where energy is lost: it has to be as near with half the step.
     """
-    first_order = bench.scene.integrator == "symplectic-euler"
+    first_order = bench.scene.grains.integrator == "symplectic-euler"
     begin(bench, bench.usual_step * (0.5 if first_order else 1.0), approach=1.0)
     bench.advance(round(0.03 / bench.dt))
     state, time = bench.snapshot(), bench.time
-    pair, mass = bench.scene.interfaces_of[COLLISION][0], 0.5 * bench.grains.mass[0, 0]
+    pair, mass = bench.scene.grains.interfaces_of[COLLISION][0], 0.5 * bench.grains.mass[0, 0]
     k = 4.0 / 3.0 * pair.young_modulus * np.sqrt(0.5 * R)
     e = rebound(0.5, 1.5 * pair.dissipative_time * (k / mass) ** 0.4)[0]
     away = np.diff(state["velocity"][COLLISION, :, 0])[0]
     assert away == pytest.approx(e, rel=2e-3)
     fall = np.array([0.3, 0.2]) * time + [0.0, -0.5 * G * time**2]
-    early = {"symplectic-euler": 0.5 * G * time * bench.dt}.get(bench.scene.integrator, 0.0)
+    early = {"symplectic-euler": 0.5 * G * time * bench.dt}.get(bench.scene.grains.integrator, 0.0)
     assert state["position"][FLIGHT, 0] == pytest.approx(np.array([0.0, 0.05 - early]) + fall, abs=1e-12)
     assert state["velocity"][FLIGHT, 0] == pytest.approx([0.3, 0.2 - G * time], abs=1e-11)
 
@@ -152,6 +152,6 @@ def test_a_launch_in_mid_flight_starts_anew(bench):
     bench.launch(velocity)
     bench.advance(500)
     time = 500 * dt
-    early = 0.5 * G * time * dt if bench.scene.integrator == "symplectic-euler" else 0.0
+    early = 0.5 * G * time * dt if bench.scene.grains.integrator == "symplectic-euler" else 0.0
     expected = here + np.array([-0.4, 0.5]) * time + [0.0, -0.5 * G * time**2 - early]
     assert bench.snapshot()["position"][FLIGHT, 0] == pytest.approx(expected, abs=1e-12)

@@ -10,6 +10,7 @@ from solvers.grains.bed.filling import start_positions
 from solvers.grains.materials import interface
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 RADIUS, SPEED = 1.5e-3, 1.0
@@ -27,7 +28,7 @@ def scene(kind, outline, **more) -> Scene:
     """Grains of these kinds (W, n), all of one size."""
     radius = np.full(np.shape(kind), RADIUS)
     kinds = {"others": KINDS[1:], "unlike": (((0, 1), AGAINST),)}
-    return Scene(radius, outline, KINDS[0], material(restitution=0.8), kind=np.asarray(kind), **kinds, **more)
+    return scene_of(radius, outline, KINDS[0], material(restitution=0.8), kind=np.asarray(kind), **kinds, **more)
 
 
 @pytest.mark.slow
@@ -56,7 +57,7 @@ def test_each_pair_of_kinds_has_its_own_collision(normal, tangential, schedule):
 
 
 def test_moduli_follow_from_both_kinds_and_the_rest_from_the_pair():
-    rows = scene([[0, 1]], box(0.1, 0.1)).interfaces_of[0]
+    rows = scene([[0, 1]], box(0.1, 0.1)).grains.interfaces_of[0]
     assert len(rows) == 9 + 3
     assert rows[1] == rows[3] and rows[5] == rows[7]  # symmetric
     soft, stiff, both = rows[4].young_modulus, rows[0].young_modulus, rows[1].young_modulus
@@ -74,7 +75,7 @@ def test_equal_kinds_behave_as_one_kind():
     place = start_positions(radius, outline, rng)[None]
     states = []
     for more in ({}, {"kind": rng.integers(0, 2, (1, 40)), "others": (KINDS[0],)}):
-        made = Scene(radius, outline, KINDS[0], KINDS[2], tangential="mindlin", stiffness_scale=1e-3, **more)
+        made = scene_of(radius, outline, KINDS[0], KINDS[2], tangential="mindlin", stiffness_scale=1e-3, **more)
         run = Simulation(made, place, threads=1)
         run.advance(round(0.06 / run.dt))
         states.append(run.snapshot() | run.observe())

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from solvers.grains.materials import Material, effective_shear, effective_young, interface
 from solvers.grains.restitution import dissipative_time_for, restitution
 from solvers.machine.marks import Interval
-from solvers.scene import Scene
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 MASS, RADIUS = 1e-5, 7.5e-4
@@ -83,9 +83,9 @@ def test_a_wall_contact_has_the_walls_friction_and_restitution():
 def test_a_scene_takes_the_masses_of_the_mean_grain():
     """Restitution 0.6 is that of two equal grains, and of a grain and a wall, of the mean diameter."""
     grain = material()
-    scene = Scene(np.array([[1e-3, 2e-3]]), box(0.1, 0.1), grain, grain)
+    scene = scene_of(np.array([[1e-3, 2e-3]]), box(0.1, 0.1), grain, grain)
     mass = 4.0 / 3.0 * np.pi * 1.5e-3**3 * grain.density
-    for between, m_eff, r_eff in zip(scene.interfaces, (mass / 2.0, mass), (0.75e-3, 1.5e-3), strict=True):
+    for between, m_eff, r_eff in zip(scene.grains.interfaces, (mass / 2.0, mass), (0.75e-3, 1.5e-3), strict=True):
         k = 4.0 / 3.0 * between.young_modulus * sqrt(r_eff)
         assert restitution(1.5 * between.dissipative_time * (k / m_eff) ** 0.4) == pytest.approx(0.6, abs=1e-7)
 

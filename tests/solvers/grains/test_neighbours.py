@@ -10,8 +10,8 @@ from solvers.grains.lists import candidates
 from solvers.grains.lists.candidates import BESIDE
 from solvers.grains.lists.skin import ASTRAY, LISTS
 from solvers.motion import Sway
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material, simulation
 
 RADIUS = 3e-3
@@ -76,14 +76,14 @@ def listed(contacts, w: int) -> np.ndarray:
 def clouded():
     """A simulation of the clouds with a step so short that nobody moves, and where they are."""
     radius, position = clouds(np.random.default_rng(7), 150, 2.0 * RADIUS + SKIN)
-    scene = Scene(radius, TANK, material(), material(), step=1e-15, schedule="per-world")
+    scene = scene_of(radius, TANK, material(), material(), step=1e-15, schedule="per-world")
     run = Simulation(scene, position, threads=1, skin=SKIN)
     return run, position
 
 
 def test_lists_equal_brute_force(clouded):
     """The lists of the first step."""
-    (run, position), rng, skin, radius = clouded, np.random.default_rng(8), SKIN, clouded[0].scene.radius
+    (run, position), rng, skin, radius = clouded, np.random.default_rng(8), SKIN, clouded[0].scene.grains.radius
     for shift in (0.0, 2e-3):
         moved = position + shift * rng.normal(size=position.shape)
         run.place(moved)
@@ -103,10 +103,10 @@ def test_lists_equal_brute_force(clouded):
 
 def check_stiffness(run: Simulation, w: int, pairs: np.ndarray, walls: np.ndarray) -> None:
     """k = (4/3) E* √R_eff of all that is listed."""
-    curvature = 1.0 / run.scene.radius[w]
+    curvature = 1.0 / run.scene.grains.radius[w]
     for contacts, between, bend in (
-        (run.grains.lists.pairs, run.scene.interfaces[0], curvature[pairs].sum(axis=1)),
-        (run.grains.lists.contacts, run.scene.interfaces[1], curvature[walls[:, 0]]),
+        (run.grains.lists.pairs, run.scene.grains.interfaces[0], curvature[pairs].sum(axis=1)),
+        (run.grains.lists.contacts, run.scene.grains.interfaces[1], curvature[walls[:, 0]]),
     ):
         found = contacts.stiffness.to_numpy()[w].reshape(-1)[: len(bend)]
         np.testing.assert_allclose(found, 4.0 / 3.0 * between.young_modulus / np.sqrt(bend), rtol=1e-12)
@@ -121,7 +121,7 @@ def shaken(skin: float | None, room: int = 1) -> Simulation:
     gas = RADIUS * (2.4 * sites + rng.uniform(-0.1, 0.1, sites.shape))
     velocity = np.stack([np.zeros((COUNT, 2)), rng.normal(0.0, 1.0, (COUNT, 2))])
     soft = material(young=3.2e6)
-    scene = Scene(
+    scene = scene_of(
         RADIUS * rng.uniform(0.7, 1.0, (2, COUNT)),
         box(WIDTH, 0.2),
         soft,
@@ -173,7 +173,7 @@ def test_lists_equal_brute_force_while_grains_fly(clouded):
 
     Each world by itself: in the second nobody moves and its first candidates stay.
     """
-    (run, position), skin, radius = clouded, SKIN, clouded[0].scene.radius
+    (run, position), skin, radius = clouded, SKIN, clouded[0].scene.grains.radius
     run.place(position)
     position, rng = position.copy(), np.random.default_rng(9)
     flight, sought = rng.normal(size=position[0].shape), []
@@ -231,7 +231,7 @@ def watched(run: Simulation) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
         position = run.snapshot()["position"]
         positions.append(position)
         counted.append(run.observe()["contacts"])
-        expected.append([brute_census(position[w], run.scene.radius[w]) for w in range(2)])
+        expected.append([brute_census(position[w], run.scene.grains.radius[w]) for w in range(2)])
         skins.append(run.grains.lists.skin.width.to_numpy())
     return np.array(positions), np.array(counted), np.array(expected), np.array(skins)
 
@@ -259,7 +259,7 @@ def test_the_skin_follows_the_speed_and_no_contact_is_missed(usual):
     run = shaken(None, room=2)
     positions, counted, expected, skins = watched(run)
     run.close()
-    diameter = 2.0 * run.scene.mean_radius
+    diameter = 2.0 * run.scene.grains.mean_radius
     np.testing.assert_array_equal(counted, expected)
     assert np.all(skins[:15, 1] > 1.5 * skins[:15, 0])  # then the gas has lost its speed
     assert np.all((skins >= 0.05 * diameter) & (skins <= 0.25 * diameter))

@@ -54,7 +54,7 @@ def held(run, overlap: np.ndarray, share: np.ndarray | float) -> np.ndarray:
 
     The small disc's contact with the floor is the stiffer, and that with the large disc has the smaller m_t.
     """
-    force = hertz_stiffness(run.scene.interfaces[1].young_modulus, SMALL) * overlap**1.5
+    force = hertz_stiffness(run.scene.grains.interfaces[1].young_modulus, SMALL) * overlap**1.5
     mass = 2.0 / 7.0 / (1.0 / run.grains.mass).sum(axis=1)
     return 2.0 * (share * force * run.dt) ** 2 / (0.4 * mass)
 
@@ -64,7 +64,7 @@ def test_the_energy_of_a_pinch_never_rises(pinched):
     run = pinched[0]
     energy, overlap = played(*pinched, run.dt)
     assert overlap.min() > 0.01 * SMALL, "the small disc is to be pinched"
-    force = hertz_stiffness(run.scene.interfaces[1].young_modulus, SMALL) * overlap**1.5
+    force = hertz_stiffness(run.scene.grains.interfaces[1].young_modulus, SMALL) * overlap**1.5
     late = FRICTION * force * np.sqrt(2.0) * SPEED * run.dt
     rises = (energy - np.minimum.accumulate(energy)).max(axis=0)
     assert np.all(rises <= held(run, overlap, np.tan(np.radians(PINCHES[:, 1] / 2))) + late), rises / energy[0]
@@ -73,7 +73,7 @@ def test_the_energy_of_a_pinch_never_rises(pinched):
 def test_a_pinch_loses_what_its_law_takes(pinched):
     """What the dampers held is lost beyond it, and no more: at most the Coulomb cap's."""
     run = pinched[0]
-    if run.scene.tangential not in RESOLVED:
+    if run.scene.grains.tangential not in RESOLVED:
         return
     (coarse, overlap), (fine, _) = played(*pinched, run.dt), played(*pinched, FINE)
     lost, right = (energy[0] - energy[-1] for energy in (coarse, fine))

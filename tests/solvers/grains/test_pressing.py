@@ -5,8 +5,8 @@ import pytest
 
 from solvers.grains.pressing import NOBODY
 from solvers.grains.shapes.given import Shapes
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.outlines import irregular
 from tests.oracles.scenes import box, material
 
@@ -21,7 +21,7 @@ def bed(shapes: Shapes | None = None, schedule: str = "auto", units: int | None 
     place = RADIUS * np.column_stack([2.3 * (column - 1.5) + 0.4 * (row % 2), 1.3 + 2.4 * row])
     radius, tank = np.full((1, len(place)), RADIUS), box(11.0 * RADIUS, 40.0 * RADIUS)
     laws = {"tangential": "none", "normal": "hertz-dashpot"}
-    scene = Scene(radius, tank, SMOOTH, SMOOTH, shapes=shapes, schedule=schedule, **laws)
+    scene = scene_of(radius, tank, SMOOTH, SMOOTH, shapes=shapes, schedule=schedule, **laws)
     made = Simulation(scene, place[None], threads=1, units=units)
     assert made.settle(1e-8 if shapes is None else 1e-5, 5.0)
     return made

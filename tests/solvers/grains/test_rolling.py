@@ -75,7 +75,7 @@ def rolls_down_a_steep_slope(_, before, after, time) -> None:
 def gentle_slope_holds(run, before, after, time) -> None:
     """tan θ < μ_r: with history it stands still; the constant torque creeps at R × 1e-3 rad/s × tan θ/μ_r."""
     down = (before["position"] - after["position"])[0, 2] @ UP_GENTLE / time
-    if run.scene.rolling == "elastic-plastic":
+    if run.scene.grains.rolling == "elastic-plastic":
         assert abs(down) < 1e-9
     else:
         assert down == pytest.approx(RADIUS * TURNING * np.tan(GENTLE) / FRICTION, rel=1e-2)

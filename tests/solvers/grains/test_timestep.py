@@ -14,6 +14,7 @@ from solvers.grains.timestep import FURTHEST, closing_speed, rayleigh_time
 from solvers.machine.limit import furthest
 from solvers.motion import Heave, Roll, Sway, Tilt
 from solvers.scene import Scene
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 TANK = box(0.2, 0.1)
@@ -24,7 +25,7 @@ def scene(diameter: float = 3e-3, outline=TANK, **given) -> Scene:
     """A scene of equal grains."""
     changes = {key: given.pop(key) for key in ("young", "restitution", "dissipative_time") if key in given}
     grain = material(**changes)
-    return Scene(np.full((1, 4), diameter / 2), outline, grain, grain, **given)
+    return scene_of(np.full((1, 4), diameter / 2), outline, grain, grain, **given)
 
 
 @pytest.mark.parametrize(
@@ -83,12 +84,12 @@ def test_step_falls_with_stiffness_and_grows_with_size():
 def test_step_resolves_the_fastest_collision_of_the_smallest_grains():
     radius = np.array([[2e-3, 1e-3], [1.5e-3, 1.2e-3]])
     elastic = material(restitution=1.0)
-    made = Scene(radius, TANK, elastic, elastic)
+    made = scene_of(radius, TANK, elastic, elastic)
     mass = 4.0 / 3.0 * pi * 1e-9 * elastic.density
     young = elastic.young / (2.0 * (1.0 - elastic.poisson**2))
     collision = hertz_duration(mass / 2.0, 5e-4, young, FALL)
     assert made.time_step() == pytest.approx(collision / ELASTIC_STEPS, rel=1e-12, abs=0.0)
-    lossy = Scene(radius, TANK, elastic, elastic, start_speed=3.0 * FALL)
+    lossy = scene_of(radius, TANK, elastic, elastic, start_speed=3.0 * FALL)
     assert lossy.time_step() == pytest.approx(made.time_step() * 3.0**-0.2, rel=1e-12, abs=0.0)
 
 
@@ -96,9 +97,9 @@ def test_step_resolves_the_fastest_collision_of_the_smallest_grains():
 def test_a_collision_of_usual_grains_takes_at_most_thirty_steps(restitution):
     """What the mean of the forces over a kick buys; that the restitution is right is tested on collisions."""
     made = scene(restitution=restitution)
-    grain, radius = made.grain[0], made.sizes[0]
+    grain, radius = made.grains.grain[0], made.grains.sizes[0]
     mass = 0.5 * grain.density * 4.0 / 3.0 * pi * radius**3
-    duration = hertz_duration(mass, 0.5 * radius, made.interfaces[0].young_modulus, made.credible_speed())
+    duration = hertz_duration(mass, 0.5 * radius, made.grains.interfaces[0].young_modulus, made.credible_speed())
     assert 15.0 < duration / made.time_step() < 30.0
 
 
@@ -120,7 +121,7 @@ def test_the_harder_of_grain_and_wall_bounds_the_step():
     """The step follows the harder of grain–grain and grain–wall contacts."""
     radius = np.full((1, 4), 1.5e-3)
     grain = material()
-    both = [Scene(radius, TANK, grain, material(young=3.2e9 * f)).time_step() for f in (1e-3, 1e3)]
+    both = [scene_of(radius, TANK, grain, material(young=3.2e9 * f)).time_step() for f in (1e-3, 1e3)]
     assert both[0] == pytest.approx(scene().time_step(), rel=0.05)
     assert both[1] < 0.9 * both[0]
 
@@ -131,9 +132,9 @@ def test_damping_gives_the_x_of_the_law():
 
     made = scene(restitution=0.7)
     mass = 4.0 / 3.0 * pi * 1.5e-3**3 * 1319.0 / 2.0
-    x = damping(made.interfaces[0], mass, 7.5e-4, 1.0)
+    x = damping(made.grains.interfaces[0], mass, 7.5e-4, 1.0)
     assert restitution(x) == pytest.approx(0.7, abs=1e-6)
-    assert damping(made.interfaces[0], mass, 7.5e-4, 32.0) == pytest.approx(2.0 * x, rel=1e-12)
+    assert damping(made.grains.interfaces[0], mass, 7.5e-4, 32.0) == pytest.approx(2.0 * x, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -149,9 +150,9 @@ def test_damping_gives_the_x_of_the_law():
     ids=["sway", "heave", "roll", "roll far off", "tilt", "gentle sway"],
 )
 def test_credible_speed_includes_the_motion_and_its_lever_arm(motion, speed):
-    made = Scene(np.full((2, 4), 1.5e-3), TANK, material(), material(), motions=[(), (motion,)])
+    made = scene_of(np.full((2, 4), 1.5e-3), TANK, material(), material(), motions=[(), (motion,)])
     assert made.credible_speed() == pytest.approx(speed, rel=1e-12)
-    assert Scene(made.radius, TANK, material(), material(), start_speed=50.0).credible_speed() == 50.0
+    assert scene_of(made.grains.radius, TANK, material(), material(), start_speed=50.0).credible_speed() == 50.0
 
 
 def test_a_given_step_is_used():
@@ -168,7 +169,7 @@ def test_credible_speed_covers_the_soft_start(phase):
     place = amplitude * start * np.sin(2.0 * pi * frequency * t + phase)
     fastest = np.abs(np.gradient(place, t)).max()
     radius, grain = np.full((1, 4), 1.5e-3), material()
-    made = Scene(radius, TANK, grain, grain, motions=[(Sway(amplitude, frequency, phase),)], soft_start=length)
+    made = scene_of(radius, TANK, grain, grain, motions=[(Sway(amplitude, frequency, phase),)], soft_start=length)
     assert fastest <= made.credible_speed() <= 4.0 * fastest
 
 
@@ -215,7 +216,7 @@ def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
     lossy = scene(restitution=0.5, **laws).time_step() < scene(restitution=0.5).time_step()
     assert lossy == (tangential == "mindlin")
     rough = material(rolling_friction=30.0)
-    stiff = Scene(np.full((1, 4), 1.5e-3), TANK, rough, rough, **laws)
+    stiff = scene_of(np.full((1, 4), 1.5e-3), TANK, rough, rough, **laws)
     assert (stiff.time_step() < scene(**laws).time_step()) == (rolling == "elastic-plastic")
 
 
@@ -232,10 +233,12 @@ def test_closing_speed_is_the_largest_difference_of_velocities(count, flat):
 
 def test_the_speed_limit_of_the_watch_is_never_exceeded():
     """So soft that a collision lasts long: a tenth of the radius a step, at 1.5 times the speed, of all 16 grains."""
-    made = Scene(np.full((1, 16), 1.5e-3), TANK, material(young=1e4), material(young=1e4), start_speed=20.0)
+    made = scene_of(np.full((1, 16), 1.5e-3), TANK, material(young=1e4), material(young=1e4), start_speed=20.0)
     longest = 0.1 * 1.5e-3 / (1.5 * 16 ** (1 / 16) * 20.0)
     assert made.longest_step(2.75) == pytest.approx(longest, rel=1e-12, abs=0.0)
-    gear = Scene(made.radius, TANK, made.grain[0], made.wall[0], start_speed=20.0, integrator="gear")
+    gear = scene_of(
+        made.grains.radius, TANK, made.grains.grain[0], made.grains.wall[0], start_speed=20.0, integrator="gear"
+    )
     firm = [limit for limit in gear.step_limits() if limit.firm and limit.forced > 1.0]
     assert [limit.step for limit in firm] == pytest.approx([longest], rel=1e-12, abs=0.0)
     assert "watch" in firm[0].reason
@@ -249,6 +252,8 @@ def test_deepest_overlap_is_that_of_the_impact(law):
     mass = 4.0 / 3.0 * pi * 1.5e-3**3 * 1319.0
     k = 4.0 / 3.0 * 3.2e9 / (2.0 * (1.0 - 0.28**2)) * sqrt(1.5e-3)
     deepest = (1.25 * mass / k) ** 0.4 / 1.5e-3
-    assert scene(normal=law).deepest_overlap(1.0) == pytest.approx(deepest, rel=1e-9)
-    assert scene(normal=law, diameter=6e-3).deepest_overlap(1.0) == pytest.approx(deepest, rel=1e-9)
-    assert scene(normal=law, stiffness_scale=1e-2).deepest_overlap(1.0) == pytest.approx(deepest * 10**0.8, rel=1e-9)
+    assert scene(normal=law).grains.deepest_overlap(1.0) == pytest.approx(deepest, rel=1e-9)
+    assert scene(normal=law, diameter=6e-3).grains.deepest_overlap(1.0) == pytest.approx(deepest, rel=1e-9)
+    assert scene(normal=law, stiffness_scale=1e-2).grains.deepest_overlap(1.0) == pytest.approx(
+        deepest * 10**0.8, rel=1e-9
+    )

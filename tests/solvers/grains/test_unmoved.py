@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from solvers.fluid.given import Fluid, Water, particles
 from solvers.machine.errors import BadState
 from tests.oracles.scenes import box, material, simulation
 
@@ -35,7 +36,7 @@ def pressed(request):
 def test_contacts_before_the_first_step_follow_hertz(pressed):
     """Hertz (1882; Johnson 1985, eq. 4.22): F = (4/3) E* √R δ^(3/2), of energy (2/5) F δ."""
     scene, mass, seen, _, _ = pressed
-    pair, wall = scene.interfaces
+    pair, wall = scene.grains.interfaces
     of_pair = 4.0 / 3.0 * pair.young_modulus * np.sqrt(RADIUS / 2.0) * OVERLAP**1.5
     of_floor = 4.0 / 3.0 * wall.young_modulus * np.sqrt(RADIUS) * OVERLAP**1.5
     assert seen["contacts"] == [3.0]
@@ -59,8 +60,7 @@ def test_grains_do_not_answer_for_water_that_stopped_a_world():
     grains, far = run.grains, RADIUS / SPEED
     with pytest.raises(BadState, match="a grain moves at"):
         grains.refuse(0, 0.0, run.dt)
-    grains.scene = replace(run.scene)
-    grains.scene.fluid.water = object()
+    grains.scene = replace(run.scene, fluid=Fluid(Water(0.01, 10.0), particles(1, 1)))
     grains.refuse(0, 0.0, run.dt)
     with pytest.raises(BadState, match="a grain moves at"):
         grains.refuse(0, 0.0, far)

@@ -18,6 +18,7 @@ from solvers.ship.section import box as hull
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import regular
+from solvers.time import kept
 from tests.oracles.outlines import ellipse
 from tests.oracles.scenes import box, material, simulation
 
@@ -172,7 +173,8 @@ def test_a_state_goes_on_with_the_same_bits_on_another_kind_of_processor(lanes, 
     for name, values in ended(elsewhere, rest).items():
         np.testing.assert_array_equal(values, found[name], err_msg=name)
     alike = throw(lanes, tangential="mindlin", cohesion=cohesion)
-    alike.restore(state | {"numbers": state["numbers"][:-1]})
+    unnamed = np.array([state[f"run.{name}"] for name in kept.ONCE[:-1]])
+    alike.restore({name: value for name, value in state.items() if "run." not in name} | {"numbers": unnamed})
     np.testing.assert_array_equal(ended(alike, rest)["position"], found["position"])
 
 
@@ -219,7 +221,7 @@ def test_a_state_of_outlines_on_scalars_goes_on_on_scalars(rule, told):
     run.advance(STEPS // 2)
     state, rest = run.state(), STEPS - STEPS // 2
     found = ended(run, rest)
-    state["numbers"][6] = told
+    state["run.vectors"] = np.array(told)
     elsewhere = throw(8, rule=rule, tangential="mindlin")
     elsewhere.restore(state)
     assert not elsewhere.wide

@@ -12,6 +12,7 @@ from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import material
 from tests.oracles.water import still
 from tests.solvers.grains.test_collisions import rebound
@@ -43,7 +44,7 @@ def scene(precision: str) -> Scene:
     """Two worlds that differ in stiffness."""
     grain = [material(young=young) for young in YOUNG]
     count = CRAWLER + 2
-    return Scene(np.full((2, count), R), TANK, grain, grain, start_speed=1.0, parts=(LIFT,), precision=precision)
+    return scene_of(np.full((2, count), R), TANK, grain, grain, start_speed=1.0, parts=(LIFT,), precision=precision)
 
 
 def stiffness(world: int) -> tuple[float, float]:
@@ -102,7 +103,7 @@ def told() -> dict[str, Told]:
 
 def restitution_errors(told: Told, world: int) -> np.ndarray:
     """Relative error of the restitution at each speed, compared with an integration of the law."""
-    pair = scene("f64").interfaces_of[world][0]
+    pair = scene("f64").grains.interfaces_of[world][0]
     found = []
     for k, speed in enumerate(SPEEDS):
         damping = 1.5 * pair.dissipative_time * (stiffness(world)[0] / (0.5 * MASS)) ** 0.4
@@ -180,7 +181,7 @@ def shaken(arch: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     place = R * (2.02 * np.stack([column - 2.0, row + 0.5], axis=1) + rng.uniform(-0.01, 0.01, (30, 2)))
     outline = R * np.array([[-6.0, 0.0], [6.0, 0.0], [6.0, 20.0], [-6.0, 20.0]])
     soft = material(young=8e5)
-    bed = Scene(
+    bed = scene_of(
         R * rng.uniform(0.9, 1.0, (1, 30)),
         outline,
         soft,

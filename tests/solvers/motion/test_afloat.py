@@ -8,7 +8,6 @@ import pytest
 
 from solvers.machine.errors import Unavailable
 from solvers.machine.units import APART
-from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.hydrostatics import turned
 from solvers.ship.loads import Floating
@@ -19,6 +18,7 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import jonswap, random_sea, regular, soft_start
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.losses import CountedLaws
 from tests.oracles.scenes import box as tank
 from tests.oracles.scenes import material
@@ -122,7 +122,7 @@ class Run:
         materials = [grains.get(w, GRAIN) for w in range(len(vessels))]
         radius = np.full((len(vessels), COUNT), RADIUS)
         radius[LOSSY] *= np.random.default_rng(3).uniform(0.75, 0.95, COUNT)  # room to flow
-        scene = Scene(
+        scene = scene_of(
             radius,
             tank(2.0 * ACROSS * RADIUS * 0.9999, 0.25),
             materials,
@@ -153,7 +153,7 @@ class Run:
             place = run.grains.grains.place[0].to_numpy()
             side = np.random.default_rng(4).choice([-np.inf, np.inf], place.shape)
             run.grains.grains.place[0].from_numpy(np.nextafter(place, side))
-        velocity = np.zeros((*run.scene.radius.shape, 2))
+        velocity = np.zeros((*run.scene.grains.radius.shape, 2))
         velocity[VACUUM] = np.random.default_rng(2).normal(0.0, 0.5, velocity.shape[1:])
         run.launch(velocity)
         run.carrier.every.fill(every)
@@ -444,7 +444,7 @@ def test_half_an_hour_in_an_irregular_sea(height):
     rig = Rig(damping=np.array([5.0, 0.0, 0.0]), spring=np.array([30.0, 0.0, 0.0]))
     ship = Ship(Body(37.0, (0.0, 0.09), 0.6), load, Radiation(ADDED.added_mass, ADDED.damping, memory()), AXIS, rig=rig)
     vessel = Vessel(replace(ship, damping=RollDamping(0.2, 0.2)), HOLD)
-    scene = Scene([[RADIUS]], tank(0.3, 0.25), material(young=1e5), material(young=1e5), vessels=[vessel], step=1e-4)
+    scene = scene_of([[RADIUS]], tank(0.3, 0.25), material(young=1e5), material(young=1e5), vessels=[vessel], step=1e-4)
     run = Simulation(scene, np.array([[[0.0, RADIUS]]]), 1)
     rolls = []
     for _ in range(36):
@@ -457,7 +457,7 @@ def test_half_an_hour_in_an_irregular_sea(height):
 
 def test_ships_do_not_run_per_grain():
     place = np.zeros((1, 1, 2)) + RADIUS
-    scene = Scene([[RADIUS]], tank(0.3, 0.25), GRAIN, GRAIN, vessels=fleet()[:1], schedule="per-grain")
+    scene = scene_of([[RADIUS]], tank(0.3, 0.25), GRAIN, GRAIN, vessels=fleet()[:1], schedule="per-grain")
     with pytest.raises(Unavailable, match="per-world"):
         Simulation(scene, place, 1)
 
@@ -469,7 +469,7 @@ def test_bands_move_the_ship_as_one_unit_does(together):
     found = []
     for schedule in ("per-world", "per-band"):
         vessel = replace(fleet()[TINY], heel=0.1, release=0.1)
-        scene = Scene(
+        scene = scene_of(
             np.full((1, COUNT), RADIUS),
             tank(2.0 * ACROSS * RADIUS * 0.9999, 0.25),
             GRAIN,

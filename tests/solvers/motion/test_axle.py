@@ -11,8 +11,8 @@ from scipy.special import ellipk
 from solvers.motion.axle import Axle
 from solvers.motion.harmonic import Sway
 from solvers.motion.history import Recorded
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 G = 9.81
@@ -25,7 +25,7 @@ RADIUS, ACROSS, DEEP = 0.01, 9, 2  # of grains in a triangular lattice from wall
 
 def rolled(axles: list[Axle], dt: float, lasts: float, **scene) -> dict[str, np.ndarray]:
     """Quantities (T, W, …) of empty tanks at every tenth step, with their times."""
-    given = Scene(np.zeros((len(axles), 0)), box(0.9, 0.5), axles=axles, gravity=G, step=dt, **scene)
+    given = scene_of(np.zeros((len(axles), 0)), box(0.9, 0.5), axles=axles, gravity=G, step=dt, **scene)
     run = Simulation(given, threads=1, arch="cpu")
     rows = [run.observe()]
     for _ in range(round(lasts / dt / 10)):
@@ -168,7 +168,7 @@ def wedged():
     )
     grain, slab = material(young=5e7, friction=0.6, restitution=0.3), 2.0 * RADIUS
     axle = Axle((0.02, 0.15), 0.004, -0.02, heel=0.01, release=0.5, length=3.0 * slab)
-    scene = Scene(
+    scene = scene_of(
         np.full((1, len(sites)), RADIUS),
         box(2.0 * ACROSS * RADIUS * 0.9999, 0.2),
         grain,

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from solvers.grains.shapes.given import Shapes
-from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.loads import Floating
 from solvers.ship.motion import Radiation, Ship, sail, start
@@ -17,6 +16,7 @@ from solvers.ship.water import Water
 from solvers.ship.waves import regular
 from solvers.simulation import Simulation
 from solvers.tank.tank import Tank
+from tests.oracles.given import scene_of
 from tests.oracles.outlines import ellipse
 from tests.oracles.scenes import box as tank
 from tests.oracles.scenes import material
@@ -54,7 +54,7 @@ def laden(request):
         Tank(tank(0.1, 0.05) + VOID, 0.02, length=LENGTH),
     )
     position = np.concatenate([wide, narrow])[None] + [0.0, 0.1 * RADIUS]
-    scene = Scene(
+    scene = scene_of(
         np.full((1, len(position[0])), RADIUS),
         tank(18.0 * RADIUS * SNUG, 0.10) + PORT,
         GRAIN,
@@ -113,7 +113,7 @@ def test_each_tank_bears_its_own_grains(laden):
     run.observe()
     first, second, empty = run.loads()[0]
     one = 4.0 / 3.0 * pi * RADIUS**3 * GRAIN.density * run.scene.gravity
-    counts = run.in_first, run.scene.radius.shape[1] - run.in_first
+    counts = run.in_first, run.scene.grains.radius.shape[1] - run.in_first
     assert first[1] / one == pytest.approx(-counts[0], rel=0.1)
     assert second[1] / one == pytest.approx(-counts[1], rel=0.1)
     assert not empty.any()
@@ -124,7 +124,7 @@ def test_outlines_move_alike_in_equal_tanks():
     """An ellipse that falls, bounces and rolls in one tank does the same in another of the hull."""
     falls = np.array([0.003, 3.0 * RADIUS])
     given = Shapes((ellipse(1.3, 1.0 / 1.3),), np.zeros((1, 2), int), np.full((1, 2), 0.4))
-    scene = Scene(
+    scene = scene_of(
         np.full((1, 2), RADIUS),
         tank(0.1, 0.06) + PORT,
         GRAIN,

@@ -71,17 +71,18 @@ def start_places() -> np.ndarray:
 def test_a_change_of_friction_acts_on_existing_contacts(run):
     """Sliding in a tank that is pulled away: μ g, before and after (Coulomb)."""
     start = run.state()
-    grain = run.scene.grain[0]
+    grain = run.scene.grains.grain[0]
     pull = np.array([0.0, 0.0, 0.5 * 20.0, 0.0, 0.0, 0.0])  # 20 m/s²: grains slide
     run.steer([STILL, pull, STILL])
     gained = []
     for friction in (0.3, 0.1):
-        run.alter(grain=(replace(grain, friction=friction),), wall=(replace(grain, friction=friction),))
+        other = (replace(grain, friction=friction),)
+        run.alter(grains=replace(run.scene.grains, grain=other, wall=other))
         run.advance(round(2e-3 / run.dt))  # the floor bears the grains again
         before, time = run.snapshot(), run.time
         run.advance(round(5e-3 / run.dt))
         gained.append((run.snapshot()["velocity"] - before["velocity"])[0, :, 0].mean() / (run.time - time) + 20.0)
-    run.alter(grain=(grain,), wall=(grain,))
+    run.alter(grains=replace(run.scene.grains, grain=(grain,), wall=(grain,)))
     run.restore(start)
     assert gained == [pytest.approx(0.3 * 9.81, rel=0.1), pytest.approx(0.1 * 9.81, rel=0.1)]
 
@@ -92,7 +93,7 @@ def test_a_change_of_gravity_acts(run):
     run.launch(velocity=np.tile([0.0, 0.5], (1, 3, 1)))
     run.advance(round(0.05 / run.dt))
     speed = run.snapshot()["velocity"][0, :, 1]
-    elapsed = run.time - float(start["numbers"][0]) * run.dt
+    elapsed = run.time - float(start["run.steps"]) * run.dt
     run.alter(gravity=9.81)
     run.restore(start)
     assert speed == pytest.approx(0.5 - 1.62 * elapsed, abs=0.02)

@@ -33,7 +33,6 @@ def swayed(model: str, rows: int) -> Scene:
     moved = [(Sway(SIZE, share * LIQUID.rates[0] / (2.0 * np.pi)),) for share in SHARES]
     scene = replace(
         scene,
-        radius=np.zeros((worlds, 0)),
         fluid=replace(scene.fluid, particles=np.tile(scene.fluid.particles, (worlds, 1))),
         motions=moved,
         soft_start=RAMP,

@@ -11,6 +11,7 @@ from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.space import order as renumber
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 COUNT, WORLDS = 120, 2
@@ -33,7 +34,7 @@ def scene(radius, schedule="per-world") -> Scene:
     """Soft grains with history in a strong sway."""
     motions = [[Sway(0.02, 3.0)]] * len(radius)
     soft = material(rolling_friction=0.2)
-    return Scene(
+    return scene_of(
         radius,
         box(0.04, 0.12),
         soft,

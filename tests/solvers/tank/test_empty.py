@@ -16,6 +16,7 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import regular
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.hulls import tapered
 from tests.oracles.scenes import box as tank
 
@@ -26,7 +27,7 @@ DAMPED = Radiation(np.diag([40.0, 52.0, 0.2]), np.diag([20.0, 100.0, 0.05]))
 
 
 def empty(worlds: int = 1, **scene) -> Scene:
-    return Scene(np.zeros((worlds, 0)), tank(0.3, 0.25), **scene)
+    return scene_of(np.zeros((worlds, 0)), tank(0.3, 0.25), **scene)
 
 
 def launched(scene: Scene, schedule: str = "per-world") -> Simulation:

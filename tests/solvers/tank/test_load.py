@@ -5,9 +5,9 @@ import pytest
 import taichi as ti
 
 from solvers.motion import Sway, Tilt
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 G, RADIUS, COUNT = 9.81, 1.5e-3, 12
@@ -35,7 +35,7 @@ def box_run():
         material(young=2e7, friction=0.0, dissipative_time=0.0),
     )
     kinds = [lossy, elastic, lossy]
-    scene = Scene(
+    scene = scene_of(
         np.full((3, COUNT), RADIUS),
         box(0.1, 0.1),
         kinds,
@@ -108,7 +108,7 @@ def test_an_elastic_bounce_transfers_twice_the_momentum(looks, box_run):
     """
     time, load, _ = looks[0]
     mass, speed = box_run.grains.mass[BOUNCING], np.sqrt(2.0 * G * HEIGHTS)
-    young = box_run.scene.interfaces_of[BOUNCING][1].young_modulus
+    young = box_run.scene.grains.interfaces_of[BOUNCING][1].young_modulus
     impulse = mass * (2.0 * speed + G * 2.87 * (mass**2 / (RADIUS * young**2 * speed)) ** 0.2)
     y = box_run.start[0][BOUNCING, :, 0]
     assert load[BOUNCING, 0] == pytest.approx(0.0, abs=1e-12)
@@ -181,7 +181,7 @@ def block():
         (Tilt(5.0, TILT, ease=0.005), Sway(1e-15, SWAY.frequency)),
         (Tilt(5.0, 1e-12, ease=0.005), SWAY),
     ]
-    scene = Scene(
+    scene = scene_of(
         np.full((2, len(sites)), RADIUS),
         box(2.0 * COLUMNS * RADIUS * 0.9999, 0.05),
         rough,
@@ -198,7 +198,7 @@ def block():
 def test_worlds_at_rest_keep_their_load(block):
     """World 0 is at rest from the start; world 1 is thrown up and falls down again."""
     weight = block.grains.mass[0].sum() * G
-    velocity = np.zeros((*block.scene.radius.shape, 2))
+    velocity = np.zeros((*block.scene.grains.radius.shape, 2))
     velocity[1, :, 1] = 0.3
     block.launch(velocity)
     assert block.settle(1e-7, 1.0)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from solvers import simulation
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.space import order as renumber
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 from tests.solvers.grains.test_neighbours import segment_distance
 
@@ -40,7 +40,7 @@ def watched(request):
     """The worlds over a quarter of a second: rows and snapshots (T, W, …), their times, and the mass of a grain."""
     place = np.array([places for places, _ in WORLDS.values()])
     velocity = np.array([np.zeros((3, 2)) if v is None else v for _, v in WORLDS.values()])
-    scene = Scene(
+    scene = scene_of(
         np.full((len(WORLDS), 3), R),
         TANK,
         SOFT,
@@ -190,7 +190,7 @@ def stepped():
     velocity = np.zeros_like(place)
     velocity[-1, 0] = 0.6  # leaps over the rim of the step
     velocity[-5, 0] = -0.1  # meets the tall rim from the step's side, or goes into the tall part
-    scene = Scene(np.full((len(place), 1), R), STEP, SMOOTH, SMOOTH, open_edges=OPEN, start_speed=1.0)
+    scene = scene_of(np.full((len(place), 1), R), STEP, SMOOTH, SMOOTH, open_edges=OPEN, start_speed=1.0)
     run = Simulation(scene, place[:, None], 1, arch="cpu")
     run.launch(velocity[:, None])
     run.advance(1)
@@ -248,7 +248,7 @@ def test_grains_that_jump_above_the_mouth_stay_and_those_through_the_outlet_leav
     radius = np.array([[R, 0.8 * R, 0.9 * R]])
     place = np.array([[[0.5 * HALF, 0.01], [-0.5 * HALF, 0.01], [-0.9 * HALF, 0.8 * R]]])
     velocity = np.array([[[0.0, 0.0], [0.0, 0.95], [0.0, 0.0]]])
-    scene = Scene(radius, BIN, SOFT, SOFT, open_edges=(1, 3), start_speed=1.0)
+    scene = scene_of(radius, BIN, SOFT, SOFT, open_edges=(1, 3), start_speed=1.0)
     run = Simulation(scene, place, 1, arch="cpu")
     run.launch(velocity)
     looks = []

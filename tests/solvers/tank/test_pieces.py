@@ -5,9 +5,9 @@ import pytest
 
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.given import Shapes
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 G, RADIUS = 9.81, 1.5e-3
@@ -35,7 +35,7 @@ def test_each_piece_bears_the_grains_on_it(how):
     place = np.array([[[-0.01, RADIUS], [0.01, 0.02 + RADIUS], [-0.04, 4e-3 + RADIUS], [0.025, 0.045 + RADIUS]]])
     weight = 4.0 / 3.0 * np.pi * RADIUS**3 * material().density * G
     soft, more = material(young=2e7), HOW[how]
-    scene = Scene(
+    scene = scene_of(
         np.full((1, 4), RADIUS),
         box(0.1, 0.1),
         soft,

@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 from tests.solvers.grains.test_neighbours import segment_distance
 
@@ -84,7 +84,7 @@ def flight(request) -> Flight:
     materials = [material(young=4e7, dissipative_time=a, friction=mu) for a, mu in KINDS.values() for _ in AIMS]
     roofs = [tuple(map(tuple, ROOF + place)) for place in (STILL, MOVING)]
     way = 0.05
-    scene = Scene(
+    scene = scene_of(
         np.full((len(start), 4), RADIUS),
         box(0.4, 0.2),
         materials,
@@ -167,7 +167,7 @@ def machine():
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(3), np.arange(7), indexing="ij"))
     bed = RADIUS * (np.stack([2.1 * column - 5.4, 2.1 * row + 1.1], axis=1) + rng.uniform(-0.05, 0.05, (BEHIND, 2)))
     on_floor = np.array([[0.035, 0.1 + RADIUS], [0.045, 0.1 + RADIUS], [0.055, 0.1 + RADIUS]])
-    scene = Scene(
+    scene = scene_of(
         np.full((1, BEHIND + 3), RADIUS),
         np.array([[-0.013, 0.0], [0.08, 0.0], [0.08, 0.2], [-0.013, 0.2]]),
         material(young=4e7),
@@ -181,7 +181,7 @@ def machine():
         run.advance(round(0.01 / run.dt))
         rows = run.observe()
         looks.append((run.time, run.snapshot()["position"][0], run.part_places()[0], rows))
-    stiffness = 4.0 / 3.0 * scene.interfaces[1].young_modulus * np.sqrt(RADIUS)
+    stiffness = 4.0 / 3.0 * scene.grains.interfaces[1].young_modulus * np.sqrt(RADIUS)
     mass = run.grains.mass[0, 0]
     run.close()
     return looks, (mass * G / stiffness) ** (2 / 3), mass
@@ -228,7 +228,7 @@ def test_a_plate_finds_grains_that_lie_still(schedule):
     plate = Part(((-0.05, 0.0), (-0.05, 0.1)), move=(0.06, 0.0), speed=1.0, acceleration=1e300)
     elastic = material(dissipative_time=0.0, friction=0.0)
     place = RADIUS * np.array([[[0.0, 20.0], [4.0, 20.0], [8.0, 20.0], [12.0, 20.0]]])
-    scene = Scene(
+    scene = scene_of(
         np.full((1, 4), RADIUS),
         box(0.2, 0.12),
         elastic,
@@ -252,7 +252,7 @@ def test_grains_from_afar_meet(schedule):
     elastic = material(dissipative_time=0.0, friction=0.0)
     place = np.array([[[-0.06, 0.05], [0.06, 0.05], [0.03, 0.09], [0.0, 0.02]]])
     velocity = np.array([[[3.0, 0.0], [-2.0, 0.0], [0.0, 1.0], [0.0, 0.0]]])
-    scene = Scene(
+    scene = scene_of(
         np.full((1, 4), RADIUS), box(0.2, 0.12), elastic, elastic, gravity=0.0, start_speed=3.0, schedule=schedule
     )
     run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from solvers.matters import MATTERS
-from solvers.scene import Scene
 from solvers.ship.body import Body
 from solvers.ship.loads import Floating
 from solvers.ship.motion import Radiation, Ship
@@ -13,6 +12,7 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import regular
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 from tests.oracles.weight import Weight
 
@@ -32,7 +32,7 @@ def two_matters(monkeypatch, every: int, push=(0.0, 0.0), spring=SPRING, schedul
     position = np.array([[[-0.02, RADIUS], [0.02, RADIUS]]])
     radius = np.full((1, 2), RADIUS)
     few = {"tangential": "none", "step": STEP}  # laws, so that kernels compile fast
-    scene = Scene(radius, box(0.1, 0.1), grain, grain, schedule=schedule, vessels=vessels, **few)
+    scene = scene_of(radius, box(0.1, 0.1), grain, grain, schedule=schedule, vessels=vessels, **few)
     run = Simulation(scene, position, 2, arch="cpu", units=2 if schedule == "per-band" else None)
     run.matters["weight"].put(*START)
     return run

@@ -15,8 +15,8 @@ import pytest
 
 from solvers.grains.bed.filling import radii, start_positions
 from solvers.motion import Tilt
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 WORLDS, COUNT = 3, 80
@@ -34,7 +34,7 @@ def run(worlds=range(WORLDS), looks=(ALL,), threads=1, skin=None) -> list[dict[s
     radius = radii(COUNT, 3e-3, 0.2, np.random.default_rng(1))
     start = np.array([start_positions(radius, outline, np.random.default_rng(seed)) for seed in worlds])
     motions = [[Tilt(3.0, (25 + 5 * w) * pi / 180, ease=0.02)] for w in worlds]
-    scene = Scene(
+    scene = scene_of(
         np.tile(radius, (len(worlds), 1)),
         outline,
         material(dissipative_time=1e-6),

@@ -8,12 +8,12 @@ import pytest
 
 from solvers.machine.errors import BadState, Unavailable
 from solvers.motion import Roll, Sway, Tilt
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
 from solvers.time.schedules import choose_schedule
 from solvers.time.settling import AT_REST
 from solvers.time.watch import RUNNING
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import material
 from tests.solvers.grains.test_neighbours import segment_distance
 
@@ -50,7 +50,7 @@ def made(schedule: str, tank: str, threads: int = THREADS) -> Simulation:
     law, open_edges = TANKS[tank]
     radius, place = start()
     motions = [(Tilt(4.0, 0.3, ease=0.01), Sway(0.004, 6.0, phase=w), Roll(0.2, 4.0, 0.5, (0.1, -0.1))) for w in (0, 1)]
-    scene = Scene(
+    scene = scene_of(
         radius,
         TANK,
         material(young=4e6, dissipative_time=2e-4),
@@ -195,7 +195,7 @@ def test_lists_equal_brute_force(run):
         run.advance(1)
         assert run.room == 1
         for w in range(WORLDS):
-            pairs, walls = brute(run, cloud[w], run.scene.radius[w], run.origin)
+            pairs, walls = brute(run, cloud[w], run.scene.grains.radius[w], run.origin)
             counted += np.array([len(pairs), len(walls)])
             for found, expected in ((run.grains.lists.pairs, pairs), (run.grains.lists.contacts, walls)):
                 rows = listed(found, w)
@@ -213,7 +213,9 @@ def test_per_grain_lists_follow_the_tanks_acceleration():
     sway = Sway(push / (20.0 * np.pi) ** 2, 10.0, phase=0.5 * np.pi)
     half, grain = 0.02, material()
     outline = np.array([[-half, 0.0], [half, 0.0], [half, 0.03], [-half, 0.03]])
-    scene = Scene(np.full((1, 2), radius), outline, grain, grain, gravity=0.0, motions=[(sway,)], schedule="per-grain")
+    scene = scene_of(
+        np.full((1, 2), radius), outline, grain, grain, gravity=0.0, motions=[(sway,)], schedule="per-grain"
+    )
     run = Simulation(scene, np.zeros((1, 2, 2)), THREADS, arch="cpu")
     gap = 1.1 * run.grains.slack()
     run.place(np.array([[[half - radius, 0.01], [half - 3.0 * radius - gap, 0.01]]]))
@@ -227,7 +229,7 @@ def momenta(run: Simulation) -> np.ndarray:
     """Linear (N s) and angular (N m s) momentum of each world, (W, 3)."""
     state, mass = run.snapshot(), run.grains.mass
     r, v, spin = state["position"], state["velocity"], state["spin"]
-    angular = mass * (r[..., 0] * v[..., 1] - r[..., 1] * v[..., 0]) + 0.4 * mass * run.scene.radius**2 * spin
+    angular = mass * (r[..., 0] * v[..., 1] - r[..., 1] * v[..., 0]) + 0.4 * mass * run.scene.grains.radius**2 * spin
     return np.concatenate([(mass[..., None] * v).sum(axis=1), angular.sum(axis=1)[:, None]], axis=1)
 
 
@@ -308,7 +310,7 @@ def test_the_watch_stops_a_bad_world(run, trouble):
     """A speed that is no number, and one that grows too large in a free fall of many steps."""
     place, velocity = start()[1], np.zeros((WORLDS, COUNT, 2))
     place[1, 7] = 0.025, 0.11
-    velocity[1, 7, 1] = np.nan if trouble == "is not a number" else 0.02 - 0.1 * run.scene.sizes[0] / STEP
+    velocity[1, 7, 1] = np.nan if trouble == "is not a number" else 0.02 - 0.1 * run.scene.grains.sizes[0] / STEP
     run.place(place, velocity)
     with pytest.raises(BadState, match=f"world 1: a grain.* {trouble}"):
         run.advance(300)

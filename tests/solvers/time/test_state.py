@@ -11,11 +11,11 @@ import pytest
 
 from solvers.machine.runtime import available_cores
 from solvers.motion import Roll, Sway
-from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
 from solvers.time import schedules
 from solvers.time.schedules.per_band import PerBand
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 RADIUS, COUNT = 3e-3, 30
@@ -47,7 +47,7 @@ def made(case: str, threads: int) -> Simulation:
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(5), np.arange(6), indexing="ij"))
     place = RADIUS * np.stack([2.1 * column - 6.0, 2.1 * row + 1.2], axis=1)
     place = place + RADIUS * rng.uniform(-0.05, 0.05, (worlds, COUNT, 2))
-    scene = Scene(
+    scene = scene_of(
         radius=RADIUS * rng.uniform(0.8, 1.0, (worlds, COUNT)),
         grain=material(young=4e6),
         wall=material(young=4e6, friction=0.4),

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from solvers.motion import Sway
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 RADIUS, COUNT, WORLDS = 3e-3, 12, 2
@@ -16,7 +16,7 @@ def run():
     """Two worlds of grains that touch one another and the floor."""
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(4), np.arange(3), indexing="ij"))
     place = np.tile(RADIUS * np.stack([1.99 * column - 3.0, 1.99 * row + 0.99], axis=1), (WORLDS, 1, 1))
-    scene = Scene(
+    scene = scene_of(
         radius=np.full((WORLDS, COUNT), RADIUS),
         outline=box(0.05, 0.05),
         grain=material(young=4e6),

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from solvers.motion import Sway
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 G, RADIUS, BASE, STRETCH = 9.81, 1.5e-3, 4e-6, 4
@@ -20,7 +20,7 @@ def started(base: float, stretch: int, schedule: str) -> Simulation:
     sites = RADIUS * np.array([(2.4 * k - 6.0, 1.2 + 2.4 * row) for row in range(5) for k in range(6)])
     place = (sites + RADIUS * rng.uniform(-0.15, 0.15, sites.shape))[None]
     sway = [[Sway(amplitude=4e-3, frequency=4.0)]]
-    scene = Scene(
+    scene = scene_of(
         np.full((1, len(sites)), RADIUS),
         box(0.022, 0.04),
         SOFT,
@@ -38,7 +38,7 @@ def started(base: float, stretch: int, schedule: str) -> Simulation:
 @pytest.fixture
 def calm(monkeypatch):
     """A scene whose grains never hurry, so that all steps have their longest length."""
-    monkeypatch.setattr(Scene, "calm_speed", lambda scene, times: 1e9)
+    monkeypatch.setattr("solvers.grains.matter.calm_speed", lambda scene, times: 1e9)
 
 
 @pytest.mark.usefixtures("calm")
@@ -69,7 +69,7 @@ def test_free_fall_is_exact_where_the_step_changes(schedule):
     """Leapfrog of constant acceleration is exact if each kick goes from the middle of a step to that of the next."""
     place = np.array([[[0.0, 0.3], [0.005, 0.3]]])
     given = {"schedule": schedule, "step": 1e-5, "start_speed": 1.0, "tangential": "none"}
-    scene = Scene(np.full((1, 2), RADIUS), box(0.1, 0.6), SOFT, SOFT, **given)
+    scene = scene_of(np.full((1, 2), RADIUS), box(0.1, 0.6), SOFT, SOFT, **given)
     run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=4)
     done = 0
     for steps in (7, 1, 2, 13, 4, 3, 5000, 9):  # the last steps to each are shorter ones
@@ -84,7 +84,7 @@ def test_free_fall_is_exact_where_the_step_changes(schedule):
 def test_steps_are_longer_while_grains_are_slow(schedule):
     """Two grains may meet at twice the speed of the faster one; a quarter more is kept in hand."""
     place = np.array([[[0.02 * k, RADIUS] for k in range(-2, 2)]])
-    scene = Scene(np.full((1, 4), RADIUS), box(0.1, 0.2), SOFT, SOFT, schedule=schedule, start_speed=2.0)
+    scene = scene_of(np.full((1, 4), RADIUS), box(0.1, 0.2), SOFT, SOFT, schedule=schedule, start_speed=2.0)
     run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=2)
     (fastest,) = run.grains.calm.to_numpy()  # closing speed up to which the stride is 2
 

@@ -54,7 +54,7 @@ def drifts(work: Path, scale: float, beds: int) -> dict[str, tuple[np.ndarray, n
         f"precision: drift at a stiffness of {scale:g}",
         lambda: {name: _centres(name, scale, beds) for name in (*PRECISIONS, NUDGED)},
     )
-    diameter = 2.0 * settled_scene(kind="tilt", beds=beds, scale=scale)[0].mean_radius
+    diameter = 2.0 * settled_scene(kind="tilt", beds=beds, scale=scale)[0].grains.mean_radius
     angle = ANGLE * np.arange(1, LOOKS + 1) / LOOKS
     usual = centres["f64"]
     return {

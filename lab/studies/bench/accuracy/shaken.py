@@ -24,7 +24,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     steps = STEPS[2:6] if fast else STEPS
     scene, _ = settled_scene()
-    diameter = 2.0 * scene.mean_radius
+    diameter = 2.0 * scene.grains.mean_radius
     reference = _end("verlet", 0.25 * steps[-1])
 
     def error(name: str, share: float) -> float:

@@ -33,7 +33,8 @@ def _speeds(push: float) -> dict[float, float]:
     scene, place = settled_scene()
     velocity = np.zeros(place.shape)
     velocity[..., 0] = push
-    runs = {skin: Simulation(scene, place, 1, skin * 2.0 * scene.mean_radius or None, arch="cpu") for skin in SKINS}
+    diameter = 2.0 * scene.grains.mean_radius
+    runs = {skin: Simulation(scene, place, 1, skin * diameter or None, arch="cpu") for skin in SKINS}
 
     def speed(run: Simulation) -> float:
         run.place(place, velocity)

@@ -8,6 +8,7 @@ import numpy as np
 from lab.preset.outline import rectangle
 from lab.studies.bench.remembered import remembered
 from solvers.grains.bed.filling import radii, start_positions
+from solvers.grains.given import Grains
 from solvers.grains.materials import Material
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -37,8 +38,9 @@ class Bed:
     def scene(self, worlds: int = 1, material: Material = ACETATE, **changes: object) -> Scene:
         """The scene of the bed in as many equal worlds, softened by SCALE; friction with history unless changed."""
         radius = np.tile(self.radius, (worlds, 1))
-        changes = {"tangential": "mindlin", **changes}
-        return Scene(radius, tank(self.width), material, material, stiffness_scale=SCALE, **changes)
+        laws = {name: changes.pop(name) for name in list(changes) if name in Grains.__dataclass_fields__}
+        laws = {"tangential": "mindlin", "stiffness_scale": SCALE, **laws}
+        return Scene(tank(self.width), Grains(radius, material, material, **laws), **changes)
 
     def places(self, worlds: int = 1) -> np.ndarray:
         """Positions (W, n, 2) m in as many worlds."""

@@ -58,7 +58,7 @@ class _Timed:
         return self.run.dt
 
     def speed(self, seconds: float) -> float:
-        self.last = timed(self.run, max(FEWEST, round(seconds * self.last / self.run.scene.radius.size)))
+        self.last = timed(self.run, max(FEWEST, round(seconds * self.last / self.run.scene.grains.radius.size)))
         return self.last
 
     def course(self, duration: float, velocity: np.ndarray | None) -> float:
@@ -81,7 +81,7 @@ def timed(run: Simulation, steps: int, clock: Callable[[], float] = time.perf_co
     begun = clock()
     run.advance(steps)
     run.clock.step.to_numpy()  # a graphics processor has done its steps when it can be read
-    return steps * run.scene.radius.size / (clock() - begun)
+    return steps * run.scene.grains.radius.size / (clock() - begun)
 
 
 def worked(run: Simulation, steps: int) -> float:

@@ -13,6 +13,7 @@ from math import cos, pi, sqrt
 import numpy as np
 
 from lab.studies.bench.speed.beds import ACETATE
+from solvers.grains.given import Grains
 from solvers.grains.laws import NORMAL, TANGENTIAL
 from solvers.grains.materials import Material, effective_young, hertz_stiffness
 from solvers.machine.errors import BadState
@@ -94,15 +95,17 @@ def scene(restitutions, integrator: str, normal: str, friction: str) -> Scene:
     materials = [material(e) for e in restitutions]
     outline, places = packing(normal)
     return Scene(
-        np.full((len(materials), len(places)), RADIUS),
         outline,
-        materials,
-        materials,
-        normal=normal,
-        tangential=friction,
+        Grains(
+            np.full((len(materials), len(places)), RADIUS),
+            materials,
+            materials,
+            normal=normal,
+            tangential=friction,
+            start_speed=SPEED,
+            integrator=integrator,
+        ),
         gravity=0.0,
-        start_speed=SPEED,
-        integrator=integrator,
     )
 
 

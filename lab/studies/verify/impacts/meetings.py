@@ -18,6 +18,7 @@ from lab.studies.verify.references import (
     mindlin_stiffness,
     sphere_mass,
 )
+from solvers.grains.given import Grains
 from solvers.grains.materials import Material
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -129,16 +130,18 @@ class Meetings:
         law = "haff-werner" if self.damper else "mindlin" if self.friction else "none"
         fastest = float(np.hypot(rows[:, 1], rows[:, 3]).max())
         return Scene(
-            np.tile(size, (len(rows), 1)),
             np.array(rectangle(2.0 * half, half)),
-            own,
-            wall,
-            normal=self.normal,
-            tangential=law,
+            Grains(
+                np.tile(size, (len(rows), 1)),
+                own,
+                wall,
+                normal=self.normal,
+                tangential=law,
+                integrator=self.integrator,
+                start_speed=fastest,
+                **more,
+            ),
             gravity=0.0,
-            integrator=self.integrator,
-            start_speed=fastest,
-            **more,
         )
 
     def _losses(self, e: float, speed: float) -> dict[str, float]:
@@ -186,8 +189,8 @@ class Meetings:
         rows, other = np.repeat(self.all, len(self.phases), axis=0), self.bodies.other_radius
         gap = (0.5 + np.tile(self.phases, len(self.all))) * step * rows[:, 3]
         base = 0.5 * np.ptp(scene.outline[:, 1]) if other else 0.0
-        place = np.zeros((*scene.radius.shape, 2))
-        velocity, spin = np.zeros_like(place), np.zeros(scene.radius.shape)
+        place = np.zeros((*scene.grains.radius.shape, 2))
+        velocity, spin = np.zeros_like(place), np.zeros(scene.grains.radius.shape)
         place[:, 0, 1] = base + other + self.radius + gap
         velocity[:, 0], spin[:, 0] = np.column_stack([rows[:, 1], -rows[:, 3]]), rows[:, 2]
         if other:

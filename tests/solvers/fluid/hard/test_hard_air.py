@@ -13,6 +13,7 @@ from solvers.fluid.start.rest import at_rest
 from solvers.motion import Sway, Tilt
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.water import GRAVITY, box
 
 pytestmark = pytest.mark.slow
@@ -29,7 +30,7 @@ def filled(region: np.ndarray | None = None, level: float = 0.15, **changes) -> 
     else:
         drops = with_air(at_rest(region, region[:, 1].max(), water, 0.0), air_round(outline, region, water, GRAVITY))
     given = {"outline": outline, "gravity": GRAVITY, "precision": "mixed"}
-    return Scene(np.zeros((1, 0)), **given, fluid=Fluid(water, drops[None]), **changes)
+    return scene_of(np.zeros((1, 0)), **given, fluid=Fluid(water, drops[None]), **changes)
 
 
 def course(scene: Scene, times: np.ndarray) -> list[dict[str, np.ndarray]]:

@@ -11,6 +11,7 @@ from solvers.fluid.start.rest import at_rest
 from solvers.motion import Roll, Sway, Tilt
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.water import GRAVITY, box
 
 pytestmark = pytest.mark.slow
@@ -22,7 +23,7 @@ def tank_of(outline: np.ndarray, level: float, rows: int, within: np.ndarray | N
     of_water = {name: changes.pop(name) for name in list(changes) if name in Water.__dataclass_fields__}
     water = Water(**{"spacing": spacing, "sound_speed": sound} | of_water)
     drops = at_rest(outline if within is None else within, level, water, GRAVITY)[None]
-    return Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, fluid=Fluid(water, drops), **changes)
+    return scene_of(np.zeros((1, 0)), outline, gravity=GRAVITY, fluid=Fluid(water, drops), **changes)
 
 
 def course(scene: Scene, times: Sequence[float]) -> list[dict[str, np.ndarray]]:
@@ -106,7 +107,7 @@ def test_a_drop_falls_on_a_dry_floor():
     drop = square[np.linalg.norm(square["position"] - [0.0, radius], axis=1) < radius]
     drop["position"][:, 1] += height - radius
     outline = box(0.6, 0.6)
-    scene = Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, fluid=Fluid(water, drop[None]))
+    scene = scene_of(np.zeros((1, 0)), outline, gravity=GRAVITY, fluid=Fluid(water, drop[None]))
     rows = course(scene, np.arange(1, 81) * 0.1)
     deep = drop["volume"].sum() / 0.6
     assert rows[-1]["water_centre"][0, 1] == pytest.approx(0.5 * deep, abs=0.25 * spacing)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from solvers.grains.materials import Material
-from solvers.scene import Scene
 from tests.oracles.courses import RADIUS, Course, Trial, bed, hard, square
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 # Spandonidis (2016), table 5.1, material C; the restitution is our choice.
@@ -36,7 +36,7 @@ def mixed() -> Trial:
     small = RADIUS / 10.0
     below = square(60, 2, 2.1 * small) + np.random.default_rng(1).uniform(-0.04, 0.04, (120, 2)) * small
     above = square(6, 2, 2.1 * RADIUS) + np.array([0.0, 0.6 * RADIUS])
-    scene = Scene(np.repeat([RADIUS, small], [12, 120]), box(13.0 * RADIUS, 24.0 * RADIUS), material(), material())
+    scene = scene_of(np.repeat([RADIUS, small], [12, 120]), box(13.0 * RADIUS, 24.0 * RADIUS), material(), material())
     return Trial(scene, np.vstack([above, below]), 0.12)
 
 
@@ -77,7 +77,7 @@ def test_a_grain_at_10_metres_a_second_strikes_a_bed():
     place = np.vstack([place, [0.3 * RADIUS, place[:, 1].max() + 2.5 * RADIUS]])
     velocity = np.zeros((1, len(place), 2))
     velocity[0, -1] = 2.0, -9.8
-    scene = Scene(
+    scene = scene_of(
         np.full(len(place), RADIUS),
         box(21.002 * RADIUS, 80.0 * RADIUS),
         material(),

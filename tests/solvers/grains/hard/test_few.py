@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from solvers.grains.restitution import restitution
-from solvers.scene import Scene
 from tests.oracles.courses import RADIUS, Trial, hard, wall_stiffness
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 G = 9.81  # m/s²
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.slow
 
 def alone(outline: np.ndarray, height: float, duration: float, looks: int = 200) -> Trial:
     """One grain at a height (m) in the middle of a tank."""
-    return Trial(Scene([RADIUS], outline, ACETATE, ACETATE), np.array([[0.0, height]]), duration, looks=looks)
+    return Trial(scene_of([RADIUS], outline, ACETATE, ACETATE), np.array([[0.0, height]]), duration, looks=looks)
 
 
 def overlap(course) -> float:
@@ -40,7 +40,7 @@ def test_a_grain_bounces_to_the_height_of_its_restitution():
         return z[int(np.argmax(np.diff(z) > 0.0)) :].max()
 
     mass, speed = trial.mass[0], np.sqrt(2.0 * G * fall)
-    time = trial.scene.interfaces[1].dissipative_time
+    time = trial.scene.grains.interfaces[1].dissipative_time
     e = restitution(1.5 * time * (wall_stiffness(trial) / mass) ** 0.4 * speed**0.2)
     assert rebound(hard(trial, rebound, 0.05)) == pytest.approx(e**2 * fall, rel=3e-3)
 
@@ -73,7 +73,7 @@ def test_the_lowest_contact_of_a_column_bears_all_its_weight():
     """A hundred grains of 50 mm upon one another in a shaft, for a minute; 1e-3: their lowest mode rings on."""
     layers, radius = 100, 25e-3
     places = np.column_stack([np.zeros(layers), radius * (1.0 + 2.0 * np.arange(layers))])
-    scene = Scene(np.full(layers, radius), box(2.0002 * radius, 2.1 * layers * radius), ACETATE, ACETATE)
+    scene = scene_of(np.full(layers, radius), box(2.0002 * radius, 2.1 * layers * radius), ACETATE, ACETATE)
     trial = Trial(scene, places, 60.0)
     trial = replace(trial, load=trial.weight)
     course = hard(trial, overlap, 0.01)
@@ -114,7 +114,7 @@ def test_unequal_grains_roll_where_they_must_and_stay_where_dimples_hold_them():
         first = np.array([y, 0.006])
         fixed += [[*(first + 2.0 * SMALL * k * down), SMALL] for k in range(25)]
         places.append(first + 9.0 * SMALL * down + (LARGE + SMALL) * np.cos(DIMPLE) * up)
-    scene = Scene([SMALL, LARGE, LARGE], box(0.1, 0.02), rough, rough, fixed=np.array(fixed))
+    scene = scene_of([SMALL, LARGE, LARGE], box(0.1, 0.02), rough, rough, fixed=np.array(fixed))
 
     def rolled(course) -> float:
         return float(np.arctan2(*(course.position[len(course.time) // 2, 0] - DOME)))

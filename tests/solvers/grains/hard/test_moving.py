@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from solvers.motion import Sway, Tilt
-from solvers.scene import Scene
 from tests.oracles.courses import RADIUS, bed, followed, hard, made_energy, overlap_of, running, sound
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 
@@ -44,7 +44,7 @@ def test_a_bed_tilted_for_five_minutes_has_flowed():
     trial = bed(40, lasting, diameter=4.0 * RADIUS, looks=3000, stiffness_scale=1e-3, motions=motions)
     course = hard(trial)
     assert abs(course.rows["pose"][-1, 2]) == pytest.approx(rate * lasting, abs=0.2 * rate)  # the ease at its ends
-    shift = np.ptp(course.rows["centre_of_mass"][..., 0]) / (2.0 * trial.scene.mean_radius)
+    shift = np.ptp(course.rows["centre_of_mass"][..., 0]) / (2.0 * trial.scene.grains.mean_radius)
     assert shift > 0.5
 
 
@@ -77,7 +77,7 @@ def test_energy_equals_the_work_of_the_tank_and_any_other_source_is_seen():
 
 def test_hertz_estimate_of_an_impact_and_a_load():
     """By hand: E* = 3.2e9/(2 · 0.9216) = 1.7361 GPa; at a wall k = (4/3) E* √R, m = (4/3) π R³ ρ."""
-    made = Scene([RADIUS], box(0.1, 0.1), material(), material())
+    made = scene_of([RADIUS], box(0.1, 0.1), material(), material())
     mass, k = 4.0 / 3.0 * np.pi * RADIUS**3 * 1319.0, 4.0 / 3.0 * 3.2e9 / (2.0 * 0.9216) * RADIUS**0.5
     assert overlap_of(made, 2.0, 0.0) == pytest.approx((1.25 * mass * 4.0 / k) ** 0.4 / RADIUS, rel=1e-12, abs=0.0)
     assert overlap_of(made, 0.0, 5.0) == pytest.approx((5.0 / (k * 0.5**0.5)) ** (2 / 3) / RADIUS, rel=1e-12, abs=0.0)

@@ -7,9 +7,11 @@ import pytest
 from scipy.optimize import curve_fit
 
 from lab.preset.bed_file import DEEPEST
+from solvers.grains.bed.relaxing import relaxed_start
 from solvers.grains.materials import hertz_stiffness
 from solvers.scene import Scene
 from tests.oracles.courses import RADIUS, Course, Trial, followed, hard, running, sound, square
+from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 
 ACETATE = material()
@@ -22,7 +24,7 @@ def test_a_hopeless_crowd_is_sound_or_ends_in_a_sentence():
     side = RADIUS * sqrt(100 * pi / 1.5)
     random = np.random.default_rng(1)
     position = random.uniform([RADIUS - 0.5 * side, RADIUS], [0.5 * side - RADIUS, side - RADIUS], (100, 2))
-    trial = Trial(Scene(np.full(100, RADIUS), box(side, 2.0 * side), ACETATE, ACETATE), position, 0.1)
+    trial = Trial(scene_of(np.full(100, RADIUS), box(side, 2.0 * side), ACETATE, ACETATE), position, 0.1)
     with running(trial) as run:
         course = followed(run, trial, trial.scene.time_step())
     if course.stopped:
@@ -34,8 +36,8 @@ def test_a_hopeless_crowd_is_sound_or_ends_in_a_sentence():
 def test_grains_put_a_little_too_close_come_apart_and_do_not_fly_up():
     """On a square lattice they overlap by as much as a bed's file may say, relaxed as the lab does it."""
     pitch = (2.0 - DEEPEST) * RADIUS
-    scene = Scene(np.full(100, RADIUS), box(11.0 * pitch, 30.0 * pitch), ACETATE, ACETATE)
-    course = hard(Trial(scene, scene.relaxed(square(10, 10, pitch)), 0.1))
+    scene = scene_of(np.full(100, RADIUS), box(11.0 * pitch, 30.0 * pitch), ACETATE, ACETATE)
+    course = hard(Trial(scene, relaxed_start(scene, square(10, 10, pitch)), 0.1))
     height = course.rows["centre_of_mass"][..., 1]
     assert height.max() - height[0] < 2.0 * RADIUS  # they rearrange
 
@@ -49,7 +51,7 @@ def gas() -> Scene:
     side = RADIUS * sqrt(MOLECULES * pi / SHARE)
     velocity = np.random.default_rng(1).normal(0.0, THERMAL, (1, MOLECULES, 2))
     velocity -= velocity.mean(axis=1, keepdims=True)
-    return Scene(
+    return scene_of(
         np.full(MOLECULES, RADIUS),
         box(side, side),
         material(restitution=RESTITUTION),
@@ -72,7 +74,7 @@ def cooling_time(scene: Scene) -> float:
     density = MOLECULES / (np.ptp(scene.outline[:, 0]) - 2.0 * RADIUS) ** 2
     covered = density * pi * RADIUS**2
     crowding = (1.0 - 7.0 / 16.0 * covered) / (1.0 - covered) ** 2
-    temperature = 0.5 * float((scene.velocity**2).sum(axis=2).mean())  # T/m, m²/s²
+    temperature = 0.5 * float((scene.grains.velocity**2).sum(axis=2).mean())  # T/m, m²/s²
     rate = 2.0 * sqrt(pi) * 2.0 * RADIUS * density * crowding * sqrt(temperature)
     return 4.0 / ((1.0 - RESTITUTION**2) * rate)
 
@@ -102,11 +104,11 @@ def test_every_contact_of_a_million_grains_is_found():
     """A square lattice of touching grains that its tank squeezes: each holds (2/5) k ξ^(5/2); ten steps."""
     many, pressed = 1000, 1e-4  # grains along a side; overlap in diameters
     pitch = 2.0 * RADIUS * (1.0 - pressed)
-    scene = Scene(np.full(many**2, RADIUS), box(many * pitch, many * pitch), ACETATE, ACETATE)
+    scene = scene_of(np.full(many**2, RADIUS), box(many * pitch, many * pitch), ACETATE, ACETATE)
     course = hard(Trial(scene, square(many, many, pitch), 10 * scene.time_step(), looks=1))
     pairs, walls = 2 * many * (many - 1), 4 * many
     assert course.rows["contacts"][0] == pairs + walls
-    between = zip(scene.interfaces, (0.5, 1.0), (2.0, 1.0), (pairs, walls), strict=True)
+    between = zip(scene.grains.interfaces, (0.5, 1.0), (2.0, 1.0), (pairs, walls), strict=True)
     elastic = sum(
         number * 0.4 * hertz_stiffness(each.young_modulus, share * RADIUS) * (deep * RADIUS * pressed) ** 2.5
         for each, share, deep, number in between

@@ -8,8 +8,8 @@ import pytest
 from solvers.grains.shapes.cargo import cargo
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.given import Shapes
-from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.outlines import ellipse, star
 from tests.oracles.scenes import box, material
 from tests.oracles.scenes import simulation as moving
@@ -52,7 +52,7 @@ def collisions(outline, contact, speed, young, nodes=200, share=1.0, worlds=WORL
     velocity = np.zeros_like(place)
     velocity[:, 0, 0], velocity[:, 1, 0] = speed, -speed
     lossless = material(young=young, friction=0.0, dissipative_time=0.0)
-    made = Scene(
+    made = scene_of(
         np.full((worlds, 2), RADIUS),
         box(0.1, 0.1),
         lossless,
@@ -152,7 +152,7 @@ def test_a_rough_disc_of_500_nodes_keeps_its_energy(rough_by_nodes):
 @pytest.mark.slow
 def test_a_triangle_rests_on_its_edge_for_a_minute():
     lossy = material(young=3e6, restitution=0.5, friction=0.5)
-    made = Scene(
+    made = scene_of(
         np.full((1, 1), RADIUS),
         box(0.03, 0.02),
         lossy,

@@ -13,6 +13,7 @@ from solvers.grains.shapes.rules import osculating, rest
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
 from tests.oracles.outlines import ellipse, star
 from tests.oracles.scenes import box, material
 
@@ -55,7 +56,9 @@ def loose(columns, rows, pitch, worlds=1):
 def scene(given, radius, **changes):
     """Grains above the ledge of a tank that sways."""
     motions = [(Sway(0.004, 6.0, phase=w),) for w in range(len(radius))]
-    return Scene(radius, LEDGE, SOFT, SOFT, tangential="mindlin", motions=motions, shapes=given, step=2e-5, **changes)
+    return scene_of(
+        radius, LEDGE, SOFT, SOFT, tangential="mindlin", motions=motions, shapes=given, step=2e-5, **changes
+    )
 
 
 def falling(given, places, radius):
@@ -93,7 +96,9 @@ def collision(contact, outlines, grain=SOFT, step=1e-5, angles=(0.3, 1.9), speed
     """Two grains that meet in free fall."""
     given = Shapes(tuple(outlines), np.array([[0, len(outlines) - 1]]), np.array([angles]), contact)
     places = np.array([[[-0.008, 0.05], [0.008, 0.052]]])
-    made = Scene(np.full((1, 2), RADIUS), box(0.1, 0.1), grain, grain, shapes=given, step=step, start_speed=2.0 * speed)
+    made = scene_of(
+        np.full((1, 2), RADIUS), box(0.1, 0.1), grain, grain, shapes=given, step=step, start_speed=2.0 * speed
+    )
     simulation = Simulation(made, places, threads=1)
     simulation.launch(np.array([[[speed, 0.0], [-speed, 0.0]]]), np.array([[20.0, 35.0]]))
     simulation.start_clock()
@@ -185,7 +190,7 @@ def test_energy_of_a_bed_of_concave_grains_without_losses(contact, within, name)
     site = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
     pitch = 2.2 * max(outline.bounding_radius for outline in outlines) * RADIUS
     places = pitch * (site - [0.5 * (columns - 1), -0.6]) + random.uniform(-1e-4, 1e-4, (worlds, *site.shape))
-    made = Scene(
+    made = scene_of(
         np.full((worlds, len(site)), RADIUS),
         box(columns * pitch, 2.0 * rows * pitch),
         LOSSLESS,
@@ -235,7 +240,7 @@ def test_ellipses_on_a_floor_and_on_a_reflex_corner(contact, floor, corner):
         places.append(CORNER + away * TOWARDS)
     count = len(places)
     given = Shapes((unit(ellipse(*AXES)),), np.zeros((count, 1), dtype=int), np.array([ANGLES * 2]).T, contact, 2000)
-    made = Scene(np.full((count, 1), RADIUS), LEDGE, SOFT, SOFT, shapes=given, step=1e-7)
+    made = scene_of(np.full((count, 1), RADIUS), LEDGE, SOFT, SOFT, shapes=given, step=1e-7)
     simulation = Simulation(made, np.array(places)[:, None], threads=1)
     simulation.advance(1)
     found = simulation.observe()["overlap"] * RADIUS
@@ -318,7 +323,7 @@ def test_a_grain_comes_to_rest_on_two_of_its_lobes():
     support = (trefoil.points(theta) @ np.stack([np.cos(ways), np.sin(ways)])).max(axis=0)
     rough = material(young=3e7, restitution=0.2, friction=0.5)
     given = Shapes((trefoil,), np.array([[0]]), np.array([[0.3]]))
-    made = Scene(np.full((1, 1), RADIUS), box(0.1, 0.1), rough, rough, tangential="mindlin", shapes=given)
+    made = scene_of(np.full((1, 1), RADIUS), box(0.1, 0.1), rough, rough, tangential="mindlin", shapes=given)
     simulation = Simulation(made, np.array([[[0.0, 1.5 * RADIUS]]]), threads=1)
     assert simulation.settle(1e-9, 2.0)
     assert simulation.observe()["contacts"] == 2
@@ -337,7 +342,9 @@ def test_a_disc_of_nodes_rolls_only_on_slopes_above_pi_over_the_nodes(nodes):
     given = Shapes((ROUND,), np.zeros((1, 2), dtype=int), turn[None], "nodes", nodes)
     corners = np.array([*floor, [0.2, 0.3], [-0.2, 0.3]])
     simulation = Simulation(
-        Scene(np.full((1, 2), RADIUS), corners, SOFT, SOFT, tangential="mindlin", shapes=given), place[None], threads=1
+        scene_of(np.full((1, 2), RADIUS), corners, SOFT, SOFT, tangential="mindlin", shapes=given),
+        place[None],
+        threads=1,
     )
     simulation.advance(round(0.3 / simulation.dt))
     gone = np.abs(simulation.snapshot()["position"][0] - place)[:, 0]
