@@ -6,6 +6,7 @@ import pytest
 from lab.studies.verify.water import (
     CASES,
     balance,
+    bore,
     drops,
     orifice,
     patch,
@@ -111,6 +112,39 @@ def test_a_tank_empties_as_its_balance_says():
     emptied = orifice.Outflow(step * np.arange(len(course)), np.array(course), np.ones(len(course)))
     assert emptied.coefficient == pytest.approx(orifice.discharge(), rel=1e-3)
     assert emptied.lasting == pytest.approx(orifice.emptying(orifice.discharge(), orifice.HIGH, orifice.LOW), rel=1e-3)
+
+
+@pytest.mark.parametrize("ratio", [1.05, 1.5, 2.5, 6.0])
+def test_a_bore_keeps_mass_and_momentum_and_loses_energy(ratio):
+    """Bélanger's (1828) ratio; and a second of stream and pressure against what the bore has left behind by then."""
+    jump = bore.Jump(0.1, 0.1 * ratio)
+    c, stream, low, high = jump.speed, jump.stream, jump.before, jump.after
+    froude = jump.inflow / np.sqrt(9.81 * low)
+    assert 0.5 * (np.sqrt(1.0 + 8.0 * froude**2) - 1.0) == pytest.approx(ratio, rel=1e-12)
+    assert c * (high - low) == pytest.approx(stream * low, rel=1e-12)
+    pressed = 0.5 * 1000.0 * 9.81 * np.array([low, high]) ** 2
+    assert jump.push == pytest.approx(pressed[1])
+    assert pressed[1] - pressed[0] == pytest.approx(1000.0 * low * (c + stream) * stream, rel=1e-12)
+    before = (c + stream) * (0.5 * 1000.0 * low * stream**2 + pressed[0])  # of the water that the bore has met
+    assert before + pressed[0] * stream - c * pressed[1] == pytest.approx(jump.loss, rel=1e-9)
+    assert jump.loss > 0.0
+
+
+def test_what_is_read_off_a_bore_is_there():
+    """Of columns of water as deep as the bore has them, which move alike behind it."""
+    length, spacing, place = 4.0, 0.01, 2.4
+    y = (np.arange(round(length / spacing)) + 0.5) * spacing
+    volume = np.where(y < place, bore.JUMP.after, bore.JUMP.before) * spacing
+    assert bore.front(y, volume, length) == pytest.approx(place, abs=0.25 * bore.DEPTH)
+    assert bore.front(y, np.full_like(y, bore.DEPTH * spacing), length) == 0.0
+    area, kinetic, long = bore.behind(place, y, volume, 3.0 * volume)
+    assert area / long == pytest.approx(bore.JUMP.after, rel=0.01) and kinetic == pytest.approx(3.0 * area)
+    assert bore.behind(8.0 * bore.JUMP.after, y, volume, volume) == (0.0, 0.0, 0.0)  # too near the wall
+    time = np.linspace(0.0, bore.DURATION, 50)
+    late = np.maximum(time - bore.FROM * bore.JUMP.after / bore.JUMP.speed, 0.0)
+    run = bore.Bore(time, 2.0 * late, *[time] * 5, *[np.ones(50)] * 3)
+    assert run.rate("place") == pytest.approx(2.0, rel=1e-9)
+    assert run.pushed == pytest.approx(time[late > 0.0].mean(), rel=0.01)
 
 
 def test_a_viscous_wave_decays_as_lamb_says(monkeypatch):
