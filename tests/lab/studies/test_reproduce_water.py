@@ -82,6 +82,28 @@ def test_an_impulse_is_told_over_that_of_shallow_water_that_rolls_alike():
     assert 1000.0 < 0.5 * shown.max() < 1500.0  # a bore that is thrown back, not a jet
 
 
+def test_energies_of_a_cycle_are_told_over_those_of_shallow_water_that_rolls_alike(monkeypatch):
+    """Of water that is given as much, stores twice as much and loses the rest; nothing of a run that ends before."""
+    monkeypatch.setattr(impact, "CELLS", 40)
+    preset, about = load("sloshing/impact").resolved, 2.3738
+    tank, duration = (preset.tank.width, preset.water.depth, preset.run.gravity), 3.3
+    time = np.linspace(0.0, duration, 3000)
+    when, *courses = impact.shallow_energy(tank, preset.motion.history.history, duration)
+    energy, work = (np.interp(time, when, course) for course in courses)
+    scale = preset.water.density * preset.tank.thickness
+    series = {"water_total": 2.0 * energy, "water_work": work, "water_held": -0.1 * work}
+    one = ran("sloshing/impact", time=time, **{name: scale * course[:, None] for name, course in series.items()})
+    found = {name: impact.NUMBERS[name][1](one, about) for name in impact.NUMBERS if not name.startswith("imp")}
+    assert (found["given_over_shallow"], found["stored_over_shallow"]) == pytest.approx((1.0, 2.0), rel=1e-4)
+    alike = impact.cycle(time, energy, work, about)
+    gained = alike["given"] - alike["lost"]
+    assert found["lost_over_shallow"] == pytest.approx(1.0 - gained / alike["lost"], rel=1e-4)
+    assert found["made_at_walls"] == pytest.approx(0.1, rel=1e-9)
+    assert 1.2 < scale * alike["given"] < 1.5 and 0.3 < scale * alike["lost"] < scale * alike["given"]  # J
+    later = about + impact.PERIOD
+    assert np.isnan([impact.NUMBERS[name][1](one, later) for name in ("lost_over_shallow", "made_at_walls")]).all()
+
+
 def test_the_scatter_of_repeated_impacts_is_that_of_their_peaks():
     """Twenty peaks of 3.2 or 4.8 kPa scatter by about a fifth, equal ones do not; three of 3, 4 and 5 kPa do not tell.
 

@@ -12,6 +12,7 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.integrate import cumulative_trapezoid
 from scipy.special import chdtri
 
 from lab.report.numbers import plus_minus
@@ -22,7 +23,7 @@ from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.costs import COSTS, cost
 from lab.studies.reproduce.water.measured import drawn
-from lab.studies.reproduce.water.theory.shallow_water import ShallowTank
+from lab.studies.reproduce.water.theory.shallow_water import Roll, ShallowTank
 from solvers.motion.history import History
 
 ABOVE = 1000.0  # Pa: the wave is there
@@ -32,6 +33,7 @@ EARLIER, LATER = 0.3, 0.4  # s, of an impact about its measured arrival
 MEASURED = "spheric10_lateral_water/pressure_sensor1.csv"
 DRAWN = -0.05, 0.25  # s about the arrival
 FIRST = 2.3738  # s
+PERIOD = 1.6365  # s, of the roll
 CELLS = 150  # of shallow water
 A_FIFTH = 0.1, 0.3  # read so, since the sheet gives no number with its hundred repeats
 
@@ -91,16 +93,65 @@ def impulse_over_shallow(one: Outcome, about: float) -> float:
     return found.impulse / float(np.trapezoid(pressed[within], time[within]))
 
 
+def over_shallow(name: str) -> Callable[[Outcome, float], float]:
+    """A number of the `cycle` about an impact over that of shallow water in the same tank, made to roll alike."""
+
+    def number(one: Outcome, about: float) -> float:
+        preset, series = one.recording.preset, one.recording.series
+        duration = float(series["time"][-1])
+        if duration < about + 0.5 * PERIOD:
+            return np.nan
+        tank = preset.tank.width, preset.water.depth, preset.run.gravity
+        courses = series["time"], *(series[key][:, 0] for key in ("water_total", "water_work"))
+        alike = cycle(*shallow_energy(tank, preset.motion.history.history, duration), about)
+        return cycle(*courses, about)[name] / (preset.water.density * preset.tank.thickness * alike[name])
+
+    return number
+
+
+def made_at_walls(one: Outcome, about: float) -> float:
+    """What the walls' dummies gave the water in the cycle about an impact, over the work of the walls themselves.
+
+    Dummies hold no energy for good, so that what they give is made by the scheme.
+    """
+    time, held, work = (one.recording.series[key] for key in ("time", "water_held", "water_work"))
+    ends = about + 0.5 * PERIOD * np.array([-1.0, 1.0])
+    had, has = (np.interp(ends, time, course[:, 0], right=np.nan) for course in (held, work))
+    return float(-(had[1] - had[0]) / (has[1] - has[0]))
+
+
+def cycle(time: np.ndarray, energy: np.ndarray, work: np.ndarray, about: float) -> dict[str, float]:
+    """What walls have `given` the water and what it has `lost` in the roll's period about an impact, and `stored` since
+    the start at its end (J), of the courses (T,) of its energy and of the walls' work."""
+    ends = about + 0.5 * PERIOD * np.array([-1.0, 1.0])
+    (before, after), (had, has) = np.interp(ends, time, energy), np.interp(ends, time, work)
+    return {"given": has - had, "lost": has - had - (after - before), "stored": float(after - energy[0])}
+
+
+def shallow(tank: tuple[float, float, float], history: History) -> tuple[ShallowTank, Roll]:
+    """Shallow water in a tank by its width (m), depth (m) and gravity (m/s²), which rolls about its floor; its roll."""
+    width, depth, gravity = tank
+    water = ShallowTank(width, depth, -history.centre[1], gravity, CELLS)
+    return water, history.motions["roll"].curve
+
+
 @cache  # takes seconds
 def shallow_pressure(tank: tuple[float, float, float, float], history: History, duration: float) -> np.ndarray:
     """Times (s) and pressures over the density (m²/s²) of shallow water in the wall to the left, (2, T).
 
-    Of a tank by its width (m), depth (m), gravity (m/s²) and the gauge's height (m), which rolls about its floor.
+    Of a tank as `shallow` has it, and the gauge's height (m).
     """
-    width, depth, gravity, height = tank
-    water = ShallowTank(width, depth, -history.centre[1], gravity, CELLS)
-    roll = history.motions["roll"].curve
-    return water.followed(roll, duration, lambda now, state: water.wall_pressure(now, state, height))
+    water, roll = shallow(tank[:3], history)
+    return water.followed(roll, duration, lambda now, state: water.wall_pressure(now, state, tank[3]))
+
+
+@cache
+def shallow_energy(tank: tuple[float, float, float], history: History, duration: float) -> np.ndarray:
+    """Times (s), energies and the work of walls so far (m⁴/s²) of shallow water, (3, T), in a tank of `shallow`."""
+    water, roll = shallow(tank, history)
+    both = lambda now, state: np.array([water.energy(now, state), -now[1] * water.moment(now, state)])  # noqa: E731
+    time, energy, power = water.followed(roll, duration, both)
+    return np.array([time, energy, cumulative_trapezoid(power, time, initial=0.0)])
 
 
 NUMBERS = {
@@ -109,6 +160,8 @@ NUMBERS = {
     "impact_mean": ("kPa", _part("mean", 1e-3)),
     "impact_impulse": ("Pa s", _part("impulse")),
     "impulse_over_shallow": ("1", impulse_over_shallow),
+    **{f"{name}_over_shallow": ("1", over_shallow(name)) for name in ("given", "lost", "stored")},
+    "made_at_walls": ("1", made_at_walls),
 }
 
 

@@ -81,6 +81,18 @@ class ShallowTank:
         walls = self.pull(roll, self.edges[[0, -1]], np.zeros(2)) * ends**2 * (0.5 * self.above - ends / 6.0)
         return float(walls[1] - walls[0] - np.sum(self.places * pull * deep) * self.cell)
 
+    def energy(self, roll: np.ndarray, state: np.ndarray) -> float:
+        """The water's energy over the earth, over ρ and over the tank's length, m⁴/s², by its height over the axle.
+
+        Water goes along the floor and with the tank, by (u − φ̇ z, φ̇ x) about the axle. Walls give it −M φ̇ with its
+        `moment` M, and what it does not gain of that is lost in bores.
+        """
+        (angle, rate, _), (deep, flow), low = roll, state, -self.above
+        square, cube = (((low + deep) ** power - low**power) / power for power in (2, 3))
+        along, turned = flow**2 / deep - 2.0 * rate * square * flow / deep, rate**2 * (self.places**2 * deep + cube)
+        lifted = self.gravity * (self.places * np.sin(angle) * deep + np.cos(angle) * square)
+        return float(np.sum(0.5 * (along + turned) + lifted) * self.cell)
+
     def wall_pressure(self, roll: np.ndarray, state: np.ndarray, height: float) -> float:
         """The pressure over ρ (m²/s²) in the wall to the left, so high (m) over the floor; none over the water."""
         deep = 1.5 * state[0, 0] - 0.5 * state[0, 1]
@@ -90,15 +102,15 @@ class ShallowTank:
         """Times (T,) s and moments (T,) m⁴/s² of water that is at rest at first."""
         return self.followed(roll, duration, self.moment)
 
-    def followed(self, roll: Roll, duration: float, number: Callable[[np.ndarray, np.ndarray], float]) -> np.ndarray:
-        """Times (T,) s and a number (T,) of roll and state of water that is at rest at first, (2, T)."""
+    def followed(self, roll: Roll, duration: float, number: Callable[[np.ndarray, np.ndarray], object]) -> np.ndarray:
+        """Times (T,) s and a number (T,), or k, of roll and state of water that is at rest at first, (1 + k, T)."""
 
         def at(time: float) -> np.ndarray:
             return np.array([roll(time, order) for order in range(3)])
 
         state, time, found = self.rest(), 0.0, []
         while time < duration:
-            found.append((time, number(at(time), state)))
+            found.append((time, *np.atleast_1d(number(at(time), state))))
             start = time
             state, step = self.stepped(state, at(start), lambda step: at(start + step))  # noqa: B023
             time += step
