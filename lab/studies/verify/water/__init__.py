@@ -22,7 +22,8 @@ TEXTS = {
         still to overturn and takes next to nothing, and is some 3 ρ g h1³ behind a bore of shallow water, which loses
         energy from the start. With 6 layers it catches up with most of that, with 12 with none. A run beside these
         with 15 layers has 0.993 of h2, 0.993 of c and 0.933 of the loss, 3.2 ρ g h1³ of it too late: the loss falls
-        with the spacing, and its limit is not known. Dummies of walls have no energy of their own; what they give, 4 % of the loss with 12 layers, is made by the scheme, and the energy lost is net of it.""",
+        with the spacing, and its limit is not known. Dummies of walls have no energy of their own; what they give, 4 %
+        of the loss with 12 layers, is made by the scheme, and the energy lost is net of it.""",
     air.SECTION: """The wave below a fluid of half the water's density is under pressures over those of that fluid at
         rest (`solvers.fluid.phases.reduced`). Under whole pressures rows of particles slide along each other at 4.9
         kPa, what the upper fluid's weight draws at its lid, and are held as teeth are: at 20 and 40 layers the rate is
