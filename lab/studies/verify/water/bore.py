@@ -28,7 +28,7 @@ from matplotlib.figure import Figure
 from lab.studies.case import Case, Found, Line, Picture, Table
 from lab.studies.verify.water.drawing import courses
 from lab.studies.verify.water.scenes import G, box, looks, order_line, resting, simulated
-from solvers.fluid.given import EXCESS, VOLUME, Water, Y
+from solvers.fluid.given import Water
 
 SECTION = "Water: a bore"
 DEPTH, RATIO = 0.1, 2.5  # m, h1; h2/h1, as shallow water has it in SPHERIC's benchmark 10 (2.1 to 2.7)
@@ -132,9 +132,9 @@ def run_up(rows: int) -> Bore:
     water = Water(spacing, SOUND, density=DENSITY)
     start = resting(water, box(length, LID * DEPTH), DEPTH, lambda place: np.tile([-JUMP.stream, 0.0], (len(place), 1)))
     start.precision = "mixed"
-    drops = start.drops[0]
-    volume = (1.0 + drops[:, EXCESS]) * drops[:, VOLUME]
-    within = drops[:, Y] + 0.5 * length < length - wave * DURATION - 0.5 * MARGIN * DEPTH
+    particles = start.fluid.particles[0]
+    volume = (1.0 + particles["excess"]) * particles["volume"]
+    within = particles["position"][:, 0] + 0.5 * length < length - wave * DURATION - 0.5 * MARGIN * DEPTH
     found, energy = [], []
     with simulated(start) as run:
         for time in looks(run, np.arange(0.0, DURATION, EVERY * np.sqrt(DEPTH / G))):
