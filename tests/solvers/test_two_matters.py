@@ -14,16 +14,16 @@ from tests.oracles.scenes import box, material
 from tests.oracles.water import lattice
 from tests.solvers.motion.test_several_tanks import ship
 
-RADIUS, SPACING, STEPS = 3e-3, 5e-3, 600
+RADIUS, SPACING, STEPS = 3e-3, 5e-3, 2000
 POOL, DEPTH = 0.06, 0.03  # m, width and depth of the water
-EGG = ellipse(1.12, 0.9)
+EGG = ellipse(1.06, 0.95)
 
 
 def beside(monkeypatch, lanes: int, rule: str | None = None, **scene) -> Simulation:
     """A ship with grains that fall in her hold, and a tank of water above it, where vectors have so many lanes."""
     monkeypatch.setattr(wide, "lanes", lambda: lanes)
     row, column = np.divmod(np.arange(24), 8)
-    place = np.column_stack([7e-3 * (column - 3.5) + 1e-3 * (row % 2), 4e-3 + 7e-3 * row])
+    place = np.column_stack([6.1e-3 * (column - 3.5) + 1e-3 * (row % 2), 3.02e-3 + 6.02e-3 * row])
     if rule:
         angle = np.random.default_rng(1).uniform(-np.pi, np.pi, (1, len(place)))
         scene["shapes"] = Shapes((EGG,), np.zeros((1, len(place)), dtype=int), angle, rule, 60)
