@@ -42,12 +42,9 @@ def beside(monkeypatch, lanes: int, rule: str | None = None, **scene) -> Simulat
     ("lanes", "rule", "scene", "together"),
     [
         (8, None, {}, True),
-        (16, None, {"precision": "mixed"}, True),
         (0, None, {}, False),
-        (8, "continuous", {}, True),
         (8, "area", {}, False),
         (8, "continuous", {"precision": "mixed"}, False),
-        (8, None, {"normal": "linear", "tangential": "cundall-strack"}, True),
     ],
 )
 def test_both_are_on_real_vectors_or_none_is(monkeypatch, lanes, rule, scene, together):

@@ -119,7 +119,8 @@ TOOLS = [name for name in ("Xvfb", "xdotool") if not shutil.which(name)]
 
 
 @pytest.mark.skipif(bool(TOOLS), reason=f"{' and '.join(TOOLS)} not installed")
-@pytest.mark.parametrize("window", ["gui", pytest.param("ggui", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("window", ["gui", "ggui"])
 def test_a_real_window_takes_keys(window, tmp_path):
     """On a virtual screen: forces appear with O, Escape closes, also from the panel."""
     from PIL import ImageGrab

@@ -153,7 +153,8 @@ def test_column_carries_its_weight_and_rests(law):
     run.close()
 
 
-@pytest.mark.parametrize("law", [pytest.param("haff-werner", marks=pytest.mark.slow), "mindlin"])
+@pytest.mark.slow
+@pytest.mark.parametrize("law", ["haff-werner", "mindlin"])
 def test_it_does_not_matter_which_of_two_grains_is_listed_first(law):
     """Two unequal grains meet off centre, wherever in a step they begin to touch: as the big and the small one number
     themselves, and the other way round. A gap before the first touch belongs to both levers alike."""
