@@ -37,7 +37,7 @@ def fluid_of(preset: Preset) -> Fluid | None:
     fills = tuple(len(in_tank.get(number, ())) for number in range(1 + len(preset.tanks)))
     water, start = preset.liquid, np.concatenate([*in_tank.values()])
     if water.model == "sph":  # else particles are not compressed
-        share = np.concatenate([np.full(len(start), _along(preset, number)) for number, start in in_tank.items()])
+        share = np.concatenate([np.full(len(filling), _along(preset, number)) for number, filling in in_tank.items()])
         wet = ~start["gas"]
         water = replace(water, density=uncompressed(start[wet], water.density, share[wet]))
     return Fluid(water, np.tile(start, (preset.run.repeats, 1)), fills if len(fills) > 1 else ())

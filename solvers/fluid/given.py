@@ -87,9 +87,9 @@ class Water:
     space. `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z",
     along which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name
     of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing.
-    `model`: "sph", or "linear" or
-    "frozen", for which see `solvers.liquid`: then waves have the share `swing_damping` of the critical damping.
-    `added_mass`: "layer" or "none", whether a ship has the answer of the walls' dummies on her own side.
+    `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share `swing_damping`
+    of the critical damping. `added_mass`: "layer" or "none", whether a ship has the answer of the walls' dummies on her
+    own side.
     """
 
     spacing: float
