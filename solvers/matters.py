@@ -1,14 +1,31 @@
-"""The matters that a tank may hold, a line each: what makes one from a scene, or None where the scene has none."""
+"""The matters that a tank may hold, a line each: what a scene says of one, what bounds its step, and what makes it."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
+from solvers.fluid.given import Fluid
 from solvers.fluid.matter import make_water
-from solvers.grains.matter import make_grains
+from solvers.fluid.timestep import limits_of_water
+from solvers.grains.given import Grains
+from solvers.grains.making import make_grains
+from solvers.grains.timestep import limits_of_grains
 from solvers.liquid.matter import make_liquid
+from solvers.machine.limit import Limit
+from solvers.tank.given import Given
 from solvers.tank.matter import Matter
 from solvers.tank.setting import Setting
 
-MATTERS = (make_grains, make_water, make_liquid)
+# In the order in which their phases act: the bounds on a step of a scene in which particles meet at a speed (m/s), and
+# what makes a matter of a scene, or None where another one does.
+MATTERS: dict[type[Given], tuple[Callable[..., list[Limit]], tuple[Callable[..., Matter | None], ...]]] = {
+    Grains: (limits_of_grains, (make_grains,)),
+    Fluid: (limits_of_water, (make_water, make_liquid)),
+}
+
+
+def limits_of(scene, closing: float) -> list[Limit]:
+    """Bounds on the step of the matters of a scene (`solvers.scene.Scene`), which meet at up to `closing` (m/s)."""
+    return [limit for kind, (limits, _) in MATTERS.items() if scene.of(kind) for limit in limits(scene, closing)]
 
 
 def setting_of(run) -> Setting:
@@ -33,7 +50,7 @@ def setting_of(run) -> Setting:
 def made(scene, setting: Setting) -> list[Matter]:
     """The matters of a scene (`solvers.scene.Scene`). Raises Unavailable."""
     found: list[Matter] = []
-    for make in MATTERS:
+    for make in (make for kind, (_, makes) in MATTERS.items() if scene.of(kind) for make in makes):
         matter = make(scene, replace(setting, wide=all(other.wide for other in found)))
         found += [matter] if matter else []
     return found

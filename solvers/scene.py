@@ -1,22 +1,25 @@
 """The scene: everything the solver needs to know about an experiment, in SI units."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Annotated
+from dataclasses import dataclass, replace
+from typing import Annotated, Self, TypeVar
 
 import numpy as np
 
 from solvers.fluid.given import Fluid
-from solvers.fluid.timestep import limits_of_water
 from solvers.grains.given import Grains
-from solvers.grains.timestep import SLOWEST, limits_of_grains
+from solvers.grains.timestep import SLOWEST
 from solvers.machine.limit import Limit
 from solvers.machine.marks import EachWorld, NotOfBed, in_one_launch, shared
+from solvers.matters import limits_of
 from solvers.motion.axle import Axle
 from solvers.motion.carrier import answered_shares, limits_of_carrier
 from solvers.ship.vessel import Vessel
+from solvers.tank.given import Given
 from solvers.tank.parts import Part
 from solvers.tank.tank import BARE_THICKNESS, Tank
+
+Matter = TypeVar("Matter", bound=Given)
 
 
 @dataclass
@@ -27,7 +30,7 @@ class Scene:
       `parts`: plates that move in the tank.
     - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
       by default all; `more_tanks` stand beside it. Parts and fixed grains belong to the first tank.
-    - `grains`, `fluid`: the matters, None: there is none.
+    - `matters`: what the tanks hold, at most one of each kind of `solvers.matters`.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
     - `step` Δt in s, None: derived.
@@ -36,8 +39,7 @@ class Scene:
     """
 
     outline: np.ndarray
-    grains: Grains | None = None
-    fluid: Fluid | None = None
+    matters: tuple[Given, ...] = ()
     gravity: float = 9.81
     motions: Annotated[Sequence[Sequence], EachWorld(lambda scene: scene.kinds_of_motions), NotOfBed()] = ()
     soft_start: Annotated[float, NotOfBed()] = 0.0
@@ -64,15 +66,30 @@ class Scene:
         each = [len(self.vessels), len(self.axles), *(matter.worlds for matter in self.matters)]
         return max(1, *each)
 
+    def of(self, kind: type[Matter]) -> Matter | None:
+        """The matter of a kind; None if there is none."""
+        return next((matter for matter in self.matters if isinstance(matter, kind)), None)
+
+    def holding(self, *matters: Given, **changes: object) -> Self:
+        """The scene with these matters in place of those of their kinds, and with other fields changed."""
+        own = {type(matter): matter for matter in (*self.matters, *matters)}
+        return replace(self, matters=tuple(own.values()), **changes)
+
     @property
-    def matters(self) -> tuple[Grains | Fluid, ...]:
-        """What the tanks hold."""
-        return tuple(matter for matter in (self.grains, self.fluid) if matter)
+    def grains(self) -> Grains | None:
+        """The grains."""
+        return self.of(Grains)
+
+    @property
+    def fluid(self) -> Fluid | None:
+        """The fluid."""
+        return self.of(Fluid)
 
     @property
     def tanks(self) -> tuple[Tank, ...]:
         """All tanks of a world, the first one included."""
-        thickness = self.thickness or (2.0 * self.grains.mean_radius if self.grains else BARE_THICKNESS)
+        suited = next((matter.thickness for matter in self.matters if matter.thickness), BARE_THICKNESS)
+        thickness = self.thickness or suited
         return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
 
     @property
@@ -82,8 +99,9 @@ class Scene:
 
     @property
     def fills(self) -> tuple[int, ...]:
-        """How many particles of water are in each tank."""
-        return self.fluid.fills(len(self.tanks)) if self.fluid else (0,) * len(self.tanks)
+        """How many particles that never leave their tank are in each of the tanks."""
+        each = [matter.fills(len(self.tanks)) for matter in self.matters]
+        return tuple(map(sum, zip(*each, strict=True))) if each else (0,) * len(self.tanks)
 
     @property
     def apart(self) -> list[int]:
@@ -93,8 +111,7 @@ class Scene:
     @property
     def pieces(self) -> int:
         """How many pieces bear loads: the walls of each tank, the parts, and the fixed grains if there are any."""
-        lined = self.grains is not None and len(self.grains.fixed) > 0
-        return len(self.tanks) + len(self.parts) + lined
+        return len(self.tanks) + len(self.parts) + sum(matter.pieces for matter in self.matters)
 
     @property
     def shares(self) -> np.ndarray | None:
@@ -126,8 +143,8 @@ class Scene:
         """Highest closing speed (m/s) to be expected: of a fall through the tank, or the tank's or a part's own."""
         corners = np.concatenate([tank.outline for tank in self.tanks])
         height = np.ptp(corners[:, 1])
-        speed = max(self.grains.start_speed if self.grains else 0.0, float(np.sqrt(2.0 * self.gravity * height)))
-        speed = max([speed, *(part.fastest() for part in self.parts)])
+        starts = (matter.start_speed for matter in self.matters)
+        speed = max(*starts, *(part.fastest() for part in self.parts), float(np.sqrt(2.0 * self.gravity * height)), 0.0)
         for motion in (m for world in self.motions for m in world):
             fastest, lever = motion.fastest(self.soft_start), 1.0
             if motion.coordinate == "turn":
@@ -138,15 +155,12 @@ class Scene:
     def step_limits(self, speed: float | None = None) -> list[Limit]:
         """Bounds on the step, the tightest first: those of the matters, without any those of ships or axles.
 
-        Grains meet at up to `speed` (m/s), by default the credible one. Without matters and ships there are none:
+        Particles meet at up to `speed` (m/s), by default the credible one. Without matters and ships there are none:
         prescribed motions are exact at any time. With grains the ships need none of their own, since the forces of the
         sea are updated every few steps.
         """
         closing = max(self.credible_speed() if speed is None else speed, SLOWEST)
-        bounds = limits_of_grains(self, closing) if self.grains else []
-        bounds = [*bounds, *(limits_of_water(self) if self.fluid else ())] or (
-            limits_of_carrier(self.vessels, self.axles, self.gravity)
-        )
+        bounds = limits_of(self, closing) or limits_of_carrier(self.vessels, self.axles, self.gravity)
         return sorted(bounds, key=lambda limit: limit.step)
 
     def longest_step(self, longer: float) -> float:

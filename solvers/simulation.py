@@ -7,8 +7,6 @@ from math import lcm
 
 import numpy as np
 
-from solvers.fluid.matter import WaterMatter
-from solvers.grains.matter import GrainMatter
 from solvers.grains.pressing import UNTOUCHED, Pressing
 from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
@@ -20,6 +18,7 @@ from solvers.motion.observer import Observer
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.vessel import Vessel
+from solvers.tank.matter import Matter
 from solvers.tank.walls import Walls
 from solvers.time import kept, watch
 from solvers.time.changes import up_to_change
@@ -71,8 +70,7 @@ class Simulation:
         means = [quantity for quantity in self.observer.quantities if quantity.mean]
         # When last, and what the means were
         self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
-        grains = scene.grains
-        self.place(position, *((grains.velocity, grains.spin) if grains else ()))
+        self.place(position, *next((matter.start for matter in scene.matters if matter.start), ()))
 
     def _build(self) -> None:
         """Make the arrays and the objects whose kernels work on them."""
@@ -85,7 +83,7 @@ class Simulation:
         self.matters = {matter.name: matter for matter in matters}
         loads = [matter.load for matter in matters]
         self.carrier.bear(loads)
-        self.clock = Clock(arrays, setting.units(scene.grains.count if scene.grains else 0))
+        self.clock = Clock(arrays, setting.units(max((matter.in_bands for matter in scene.matters), default=0)))
         sequence = Sequence(matters, self.carrier)
         self.beat, self.wide = sequence.beat, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
@@ -93,31 +91,27 @@ class Simulation:
         arrays.finish()
 
     @property
-    def grains(self) -> GrainMatter | None:
-        """The scene's grains; None if it has none."""
+    def grains(self) -> Matter | None:
+        """The grains among the `matters`; None if there are none."""
         return self.matters.get("grains")
 
     @property
-    def water(self) -> WaterMatter | None:
-        """The scene's water; None if it has none."""
+    def water(self) -> Matter | None:
+        """The water among the `matters`; None if there is none."""
         return self.matters.get("water")
 
     def place(
         self, position: np.ndarray | None, velocity: np.ndarray | None = None, spin: np.ndarray | None = None
     ) -> None:
         """Place the grains at `position` (W, n, 2) m without contact history, and the water; `launch` all matters."""
-        if self.grains:
-            self.grains.place(np.asarray(position, dtype=np.float64).reshape(*self.scene.grains.radius.shape, 2))
-        if self.water:
-            self.water.place()
+        for matter in self.matters.values():
+            matter.place(position)
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None: at rest."""
-        if self.grains:
-            radius = self.scene.grains.radius
-            velocity = np.zeros((*radius.shape, 2)) if velocity is None else velocity
-            self.grains.launch(velocity, np.zeros(radius.shape) if spin is None else spin)
+        for matter in self.matters.values():
+            matter.launch(velocity, spin)
         self.clock.launch()
         self.unkicked = self.observed = self.steps
         self.moored = False
@@ -244,16 +238,15 @@ class Simulation:
         self.scene = replace(self.scene, vessels=list(vessels))
         self.carrier.meet(vessels)
 
-    def alter(self, **changes: object) -> None:
-        """Go on with other materials or another gravity, given as fields of the scene. The grains stay as they are.
+    def alter(self, altered: Scene) -> None:
+        """Go on with a scene of other materials or another gravity. The grains stay as they are.
 
         Raises Unavailable if the changes need shorter steps or longer liquid bridges than the arrays were made for.
         """
-        altered = replace(self.scene, **changes)
         if altered.longest_step(1.0) < SHORTER * self.longest_step:
             raise Unavailable("this asks for shorter time steps: start the experiment anew with it")
-        if altered.grains and altered.grains.longest_bridge > self.scene.grains.longest_bridge:
-            raise Unavailable("this lets the liquid reach farther: start the experiment anew with it")
+        for matter in self.matters.values():
+            matter.bear(altered)
         self.scene = altered
         self.carrier.gravity.fill(altered.gravity)
         for matter in self.matters.values():
@@ -287,10 +280,9 @@ class Simulation:
 
     def pressing(self, world: int = 0) -> Pressing:
         """The present elastic contact forces in a world; none without grains."""
-        if not self.grains:
-            return UNTOUCHED
         runtime.merge_repeats(self.simple)
-        return self.grains.pressing(world, self.origin + self.time)
+        found = (matter.pressing(world, self.origin + self.time) for matter in self.matters.values())
+        return next((pressing for pressing in found if pressing), UNTOUCHED)
 
     def part_places(self) -> np.ndarray:
         """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""

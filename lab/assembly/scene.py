@@ -42,8 +42,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     grains, position = grains_of(preset)
     scene = Scene(
         outline=np.array(preset.tank.corners),
-        grains=grains,
-        fluid=fluid_of(preset),
+        matters=tuple(matter for matter in (grains, fluid_of(preset)) if matter),
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * worlds,
         soft_start=preset.motion.soft_start,
@@ -112,7 +111,7 @@ def _step(preset: Preset, scene: Scene) -> float:
         wanted = share * usual
         if scene.fluid and scene.fluid.water.air and scene.fluid.water.air.stiff_from > 0.0:
             longest = _soft_stride(preset, scene, wanted)
-            scene.fluid = replace(scene.fluid, soft_stride=longest)
+            scene.matters = scene.holding(replace(scene.fluid, soft_stride=longest)).matters
             wanted = min(wanted, soft_limit(scene, LEVELS[run.accuracy].longer_steps) / longest)
     elif limits:
         check_forced(wanted, limits, usual, run.force_step)
@@ -121,5 +120,5 @@ def _step(preset: Preset, scene: Scene) -> float:
     of_water = ceil(count / longest_pace(scene, interval / count))
     pace = ceil(count / of_water)
     if scene.fluid:
-        scene.fluid = replace(scene.fluid, pace=pace)
+        scene.matters = scene.holding(replace(scene.fluid, pace=pace)).matters
     return interval / (of_water * pace)

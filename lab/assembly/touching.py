@@ -42,8 +42,8 @@ def touching(preset: Preset, recorded: Recorded) -> Scene:
         shapes = Shapes(tuple(drawn.contours), drawn.which, angle, contact.outlines, contact.nodes)
     own = {"velocity": None, "spin": None, "kind": np.asarray(recorded.kind, dtype=int) if preset.kinds else None}
     scene = Scene(
-        outline=np.array(recorded.outline),
-        grains=replace(given, **own, radius=recorded.radius, fixed=recorded.fixed, shapes=shapes),
+        np.array(recorded.outline),
+        (replace(given, **own, radius=recorded.radius, fixed=recorded.fixed, shapes=shapes),),
         gravity=preset.run.gravity,
         open_edges=tuple(recorded.open_edges),
         parts=tuple(part.dry for part in preset.parts.values()),

@@ -43,9 +43,14 @@ def _told(given: object, world: int) -> Iterator[tuple[str, object]]:
                 value = _shapes_of(value, world)
             elif field.name in each and value is not None:
                 value = value[world]
-            elif is_dataclass(value) and marked(type(value), NotOfBed):
-                value = tuple(_told(value, world))
+            elif isinstance(value, tuple):
+                value = tuple(tuple(_told(one, world)) if _is_of_bed(one) else one for one in value)
             yield field.name, value
+
+
+def _is_of_bed(value: object) -> bool:
+    """Whether it has fields from which a bed does not follow."""
+    return is_dataclass(value) and bool(marked(type(value), NotOfBed))
 
 
 def _shapes_of(shapes: Shapes, world: int) -> tuple:

@@ -116,7 +116,7 @@ def _settled_as_discs(
     scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress
 ) -> np.ndarray:
     """Positions (W, n, 2) m of settled discs of the same sizes, from the store if they are in it."""
-    discs = replace(scene, shapes=None, step=how.disc_step)
+    discs = scene.holding(replace(scene.grains, shapes=None), step=how.disc_step)
     simulation = settled(discs, position, replace(how, disc_step=None), start, progress)
     try:
         return simulation.snapshot()["position"]
@@ -147,7 +147,7 @@ def _poured(
     pouring, grains = replace(scene, outline=np.array(how.outline), open_edges=(), motions=()), scene.grains
     if how.surface == "undisturbed":
         smooth = {"grain": _frictionless(grains.grain), "wall": _frictionless(grains.wall)}
-        pouring = replace(pouring, grains=replace(grains, **smooth))
+        pouring = pouring.holding(replace(grains, **smooth))
     simulation = start(pouring, position)
     try:
         _settle(simulation, how, "pouring", progress)
@@ -157,7 +157,7 @@ def _poured(
     poured, inner = snapshot["position"], grains.radius
     if grains.shapes:
         inner = inner * np.array([outline.smallest_radius for outline in grains.shapes.outlines])[grains.shapes.which]
-        scene = replace(scene, grains=replace(grains, shapes=replace(grains.shapes, angle=snapshot["angle"])))
+        scene = scene.holding(replace(grains, shapes=replace(grains.shapes, angle=snapshot["angle"])))
     if how.surface == "undisturbed":
         beds = zip(poured, grains.radius, strict=True)
         poured = np.stack([levelled(bed, radius, pouring.outline, grains.fixed) for bed, radius in beds])

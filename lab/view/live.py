@@ -118,7 +118,7 @@ class Live:
             mover.wanted[name] = value
         elif control.kind == ALTERS:
             try:
-                self.simulation.alter(**control.changes(self.simulation.scene, value))
+                self.simulation.alter(control.changes(self.simulation.scene, value))
             except Unavailable as error:
                 raise LabError(f"{control.label}: {error}.") from None
         else:

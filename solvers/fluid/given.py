@@ -5,8 +5,8 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from solvers.machine import wide
 from solvers.machine.marks import Doc, EachWorld, Interval, NotOfBed, Unit
+from solvers.tank.given import Given
 
 # A particle as it starts: position (m) and velocity over the earth (m/s) in the tank's axes, excess s = ρ/ρ0 − 1 of
 # density, volume (m²) in the plane, and whether it is air. A motion that starts abruptly finds the water at rest.
@@ -141,7 +141,7 @@ class Water:
 
 
 @dataclass(frozen=True, eq=False)
-class Fluid:
+class Fluid(Given):
     """The fluid of a scene: its `water`, the `particles` (W, n) of `PARTICLE` as they start, and its steps.
 
     Those of air come last. `in_tanks`: how many particles are in each tank of a world, by their numbers one after the
@@ -181,10 +181,6 @@ class Fluid:
     def softened(self) -> "Fluid":
         """As it is at the start, until its air is stiff."""
         return replace(self, water=self.water.softened)
-
-    def lanes(self, precision: str) -> int:
-        """Lanes of a block of pairs of grains beside it on real vectors, 0 for none."""
-        return wide.lanes()
 
     def fills(self, tanks: int) -> tuple[int, ...]:
         """How many particles are in each of so many tanks."""

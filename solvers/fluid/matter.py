@@ -196,7 +196,7 @@ class WaterMatter(Matter):
         y, z, mass, volume = p.read(*p.place, p.mass, p.volume)
         return [frozen(*one) for one in zip(y, z, per_slab(self.scene) * mass, volume, strict=True)]
 
-    def place(self) -> None:
+    def place(self, position: np.ndarray | None) -> None:
         """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
         p = self.particles
         self.stiffening.take(False, self.scene.gravity)
@@ -291,8 +291,8 @@ class WaterMatter(Matter):
 
 
 def make_water(scene, setting: Setting) -> WaterMatter | None:
-    """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
-    if scene.fluid is None or not scene.fluid.moved:
+    """The water of a scene (`solvers.scene.Scene`); None where they do not move one by one. Raises Unavailable."""
+    if not scene.fluid.moved:
         return None
     refuse_scene(scene.fills, len(scene.parts), bool(scene.grains))
     refuse_reduced(scene)

@@ -19,8 +19,10 @@ TRAVELLED = 0.02  # of the shortest period of the tank's motion
 SLOW = 1e-9
 
 
-def limits_of_water(scene) -> list[Limit]:
-    """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected."""
+def limits_of_water(scene, closing: float = 0.0) -> list[Limit]:
+    """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected.
+
+    They do not depend on the speed at which its particles meet."""
     water = scene.fluid.water
     length, sound, speed = water.length, water.sound_speed, water_speed(scene)
     bounds = [
@@ -71,7 +73,7 @@ def longest_pace(scene, step: float) -> int:
 
 def soft_limit(scene, longer: float) -> float:
     """The step (s) `longer` times the derived one, within its firm bounds, while the air of a scene is soft."""
-    return replace(scene, fluid=scene.fluid.softened).longest_step(longer)
+    return scene.holding(*(matter.softened for matter in scene.matters)).longest_step(longer)
 
 
 def stiff_step(scene) -> int:

@@ -12,10 +12,11 @@ from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
 from solvers.machine import wide
 from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed
+from solvers.tank.given import Given
 
 
 @dataclass
-class Grains:
+class Grains(Given):
     """W worlds of n grains.
 
     - `radius` (W, n) m; `sizes`: smallest and largest radius (m) a world may hold, by default the range of `radius`.
@@ -49,7 +50,7 @@ class Grains:
     fixed: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     shapes: Annotated[Shapes | None, EachWorld(lambda grains: grains.shapes and grains.shapes.alike)] = None
     integrator: str = "verlet"
-    pace: ClassVar = 1  # steps of the scene in one of theirs
+    pace: ClassVar = 1
     soft_stride: ClassVar = 1
     interfaces_of: list[tuple[Interface, ...]] = field(init=False)  # per world, in the row order of `ChosenLaws`
 
@@ -90,6 +91,26 @@ class Grains:
     def moved(self) -> int:
         """How many of them are moved one by one: all."""
         return self.count
+
+    @property
+    def in_bands(self) -> int:
+        """How many of them the bands of a world are cut by: all."""
+        return self.count
+
+    @property
+    def start(self) -> tuple:
+        """Velocities and spins at the start."""
+        return self.velocity, self.spin
+
+    @property
+    def pieces(self) -> int:
+        """The fixed grains bear loads together."""
+        return int(len(self.fixed) > 0)
+
+    @property
+    def thickness(self) -> float:
+        """Thickness (m) of a tank with one layer of them: their mean diameter."""
+        return 2.0 * self.mean_radius
 
     @property
     def simple(self) -> bool:

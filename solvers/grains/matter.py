@@ -8,21 +8,13 @@ import taichi as ti
 from solvers.grains.census import Census
 from solvers.grains.checks import FASTEST_STEP, check_state, refuse_speed
 from solvers.grains.contacts import Contacts
-from solvers.grains.integrators import INTEGRATORS
-from solvers.grains.laws.chosen import ChosenLaws
 from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.lists.numbering import Numbering
-from solvers.grains.lists.skin import Skin, widths
 from solvers.grains.mover import Mover
 from solvers.grains.pressing import Presser, Pressing
-from solvers.grains.shapes.grains import ShapedState
-from solvers.grains.shapes.rules.area import Area
-from solvers.grains.shapes.rules.contacts import ShapedContacts
-from solvers.grains.shapes.rules.continuous import Continuous
-from solvers.grains.shapes.rules.discrete import Discrete
-from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import GrainState
 from solvers.grains.timestep import calm_speed
+from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_metre
@@ -35,7 +27,6 @@ from solvers.tank.setting import Setting
 # A speed (m/s) whose 16th power is no number in 32 bits any more.
 UNSEEN = 5e-3
 HASTE = 1.25  # what grains may gain in speed until the next look, at most half the skin later
-RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 
 
 @ti.data_oriented
@@ -197,13 +188,17 @@ class GrainMatter(Matter):
 
     def place(self, position: np.ndarray) -> None:
         """Place the grains at `position` (W, n, axes) m, at rest and without contact history."""
+        position = np.asarray(position, dtype=np.float64).reshape(*self.scene.grains.radius.shape, self.grains.axes)
         position = self.numbering.in_solver_order(position)
         self.grains.put(position)
         self.lists.forget()
         self.numbering.ordered = position.copy()
 
-    def launch(self, velocity: np.ndarray, spin: np.ndarray) -> None:
-        """Set the grains' velocities (W, n, axes) m/s and spins (W, n) rad/s."""
+    def launch(self, velocity: np.ndarray | None, spin: np.ndarray | None) -> None:
+        """Set the grains' velocities (W, n, axes) m/s and spins (W, n) rad/s; None: at rest."""
+        shape = self.scene.grains.radius.shape
+        velocity = np.zeros((*shape, self.grains.axes)) if velocity is None else velocity
+        spin = np.zeros(shape) if spin is None else spin
         self.grains.launch(*(self.numbering.in_solver_order(values) for values in (velocity, spin)))
         self.mover.rest()
         self.load.forget()
@@ -220,6 +215,11 @@ class GrainMatter(Matter):
     def start_clock(self) -> None:
         """The clock starts: angles count from here on."""
         self.grains.count_turns_anew()
+
+    def bear(self, scene) -> None:
+        """Raise Unavailable if liquid bridges of a scene reach farther than the lists were made for."""
+        if scene.grains.longest_bridge > self.scene.grains.longest_bridge:
+            raise Unavailable("this lets the liquid reach farther: start the experiment anew with it")
 
     def alter(self, scene) -> None:
         """Go on with the materials of a scene that equals the present one in everything else."""
@@ -262,34 +262,3 @@ class GrainMatter(Matter):
         apart = ((place - centre[:, None]) ** 2).sum(axis=2)
         inertia = (mass * apart + own).sum(axis=1)
         return [Body(float(m), tuple(c), float(i)) for m, c, i in zip(total, centre.tolist(), inertia, strict=True)]
-
-
-def make_grains(scene, setting: Setting) -> GrainMatter | None:
-    """The grains of a scene (`solvers.scene.Scene`); None where it has none."""
-    if scene.grains is None:
-        return None
-    given = scene.grains
-    arrays, walls, count = setting.arrays, setting.walls, given.count
-    units = setting.units(count, len(given.fixed))
-    load = setting.load(arrays.under("grains"), units)
-    may_leave = any(tank.open_edges for tank in scene.tanks)
-    state = given.radius, given.density, given.fixed, units.ghosts, may_leave, given.kind
-    integrator = INTEGRATORS[given.integrator]()
-    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator)
-    laws.wide = setting.vectors if laws.fit and given.bears_vectors and not units.single else 0
-    moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
-    grains = GrainState(arrays, *state) if given.shapes is None else ShapedState(arrays, given.shapes, *state)
-    together = given.shapes is None and units.whole
-    early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
-    wide = widths(scene, setting.skin, units.single, together)
-    skin = Skin(arrays, grains, wide, given.longest_bridge, early, together, walls.moving)
-    lists = given.farthest_reach, skin, laws, moduli, setting.room
-    if given.shapes is None:
-        neighbours = Neighbours(arrays, units, grains, walls, *lists)
-        contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
-    else:
-        rule = RULES[given.shapes.contact](arrays, units, walls, given.shapes, laws.wide)
-        neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
-        contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
-    mover = Mover(arrays, units, grains, integrator, setting.carrier.rotating)
-    return GrainMatter(scene, setting, load, grains, neighbours, contacts, mover)

@@ -150,7 +150,7 @@ class LiquidMatter(Matter):
             rows["level_depth"][:, number] = self.modes[0].level(level.y, way[:, 0])
         return rows
 
-    def place(self) -> None:
+    def place(self, position: np.ndarray | None) -> None:
         """Let the liquid be at rest."""
         for field in (self.way, self.speed_of, self.rise):
             field.fill(0.0)

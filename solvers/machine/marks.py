@@ -104,10 +104,17 @@ def in_one_launch(values: list) -> object:
     found = {name: joined([getattr(value, name) for value in values]) for name in each}
     found |= {name: max(getattr(value, name) for value in values) for name in largest}
     for name in (field.name for field in fields(first) if field.init and field.name not in found):
-        part = getattr(first, name)
-        if is_dataclass(part) and marked(type(part), EachWorld):
-            found[name] = in_one_launch([getattr(value, name) for value in values])
+        parts = [getattr(value, name) for value in values]
+        if _differs(parts[0]):
+            found[name] = in_one_launch(parts)
+        elif isinstance(parts[0], tuple) and any(map(_differs, parts[0])):
+            found[name] = tuple(in_one_launch(list(each)) for each in zip(*parts, strict=True))
     return replace(first, **found)
+
+
+def _differs(part: object) -> bool:
+    """Whether it has fields in which the worlds of one launch may differ."""
+    return is_dataclass(part) and bool(marked(type(part), EachWorld))
 
 
 def joined(values: list) -> object:

@@ -65,11 +65,24 @@ class Matter:
     def start_clock(self) -> None:
         """Note that the clock starts now."""
 
+    def place(self, position: np.ndarray | None) -> None:
+        """Place the particles, at rest: those of grains at `position` (W, n, axes) m, others as the scene says."""
+
+    def launch(self, velocity: np.ndarray | None, spin: np.ndarray | None) -> None:
+        """Set the velocities (W, n, axes) m/s and spins (W, n) rad/s of grains; None: at rest."""
+
+    def bear(self, scene) -> None:
+        """Raise Unavailable if its arrays do not suit the materials of a scene that else equals the present one."""
+
     def alter(self, scene) -> None:
         """Go on with the materials of a scene that equals the present one in everything else."""
 
     def change(self) -> None:
         """Go on with other numbers from now on; `changes` is never then."""
+
+    def pressing(self, world: int, time: float):
+        """The elastic contact forces in a world at its time (s), `grains.pressing.Pressing`; None: there are none."""
+        return None
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """What is known of each particle at `time` (s), which is now, in the tank's frame: (W, n, …) by name."""

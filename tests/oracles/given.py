@@ -11,7 +11,10 @@ GRAINS = Grains.__dataclass_fields__
 def scene_of(radius, outline, grain=(), wall=(), *laws, **given) -> Scene:
     """A scene of grains with `radius` (n,) or (W, n) in a tank; fields of the grains and of the scene go by name."""
     of_grains = {name: given.pop(name) for name in list(given) if name in GRAINS}
+    fluid = given.pop("fluid", None)
+    matters = (fluid,) if fluid else ()
     if np.size(radius):
-        return Scene(outline, Grains(radius, grain, wall, *laws, **of_grains), **given)
-    given.setdefault("motions", [()] * len(radius))
-    return Scene(outline, **given)
+        matters = (Grains(radius, grain, wall, *laws, **of_grains), *matters)
+    else:
+        given.setdefault("motions", [()] * len(radius))
+    return Scene(outline, matters, **given)

@@ -55,7 +55,7 @@ def again(run: Simulation, scene: Scene) -> Simulation:
         stiffening = run.water.stiffening
         stiffening.soft = stiffening.stiff = stiffening.now = scene.fluid.water
     run.scene, run.water.fluid = scene, scene.fluid
-    run.alter(gravity=scene.gravity)
+    run.alter(scene)
     run.start_clock()
     run.place(np.zeros((1, 0, 2)))
     return run

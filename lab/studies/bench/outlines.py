@@ -144,13 +144,15 @@ def collide(given: list[Contour], rule: str, nodes: int | None) -> np.ndarray:
     velocity[:, 0, 0], velocity[:, 1, 0] = SPEED, -SPEED
     scene = Scene(
         np.array(rectangle(0.1, 0.1)),
-        Grains(
-            np.full((PAIRS, 2), RADIUS),
-            LOSSLESS,
-            LOSSLESS,
-            shapes=shapes(given, rule, nodes, PAIRS, 2),
-            start_speed=SPEED,
-            velocity=velocity,
+        (
+            Grains(
+                np.full((PAIRS, 2), RADIUS),
+                LOSSLESS,
+                LOSSLESS,
+                shapes=shapes(given, rule, nodes, PAIRS, 2),
+                start_speed=SPEED,
+                velocity=velocity,
+            ),
         ),
         gravity=0.0,
     )
@@ -199,12 +201,14 @@ def bed(given: list[Contour], rule: str | None, nodes: int | None) -> Simulation
     high = place[:, 1].max() + 2.0 * pitch
     scene = Scene(
         np.array(rectangle(width, high)),
-        Grains(
-            np.full((1, count), RADIUS),
-            SOFT,
-            SOFT,
-            tangential="mindlin",
-            shapes=None if rule is DISCS else shapes(given, rule, nodes, 1, count),
+        (
+            Grains(
+                np.full((1, count), RADIUS),
+                SOFT,
+                SOFT,
+                tangential="mindlin",
+                shapes=None if rule is DISCS else shapes(given, rule, nodes, 1, count),
+            ),
         ),
         schedule="per-world",
     )

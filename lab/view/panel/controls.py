@@ -21,14 +21,14 @@ class Control:
     """A control of the preset's `key`, whose usual values it has unless `span` (SI) says others.
 
     `own` gives a preset's own value, None if the control does not apply to it. A control that ALTERS the scene has
-    `changes`, a function from scene and value to the changed fields; one that RESTARTS starts with another `key`.
+    `changes`, a function from scene and value to the changed scene; one that RESTARTS starts with another `key`.
     """
 
     label: str
     key: str
     kind: str
     own: Callable[[Preset], float | None]
-    changes: Callable[[Scene, float], dict] | None = None
+    changes: Callable[[Scene, float], Scene] | None = None
     span: Usual | None = None
 
     @cached_property
@@ -79,14 +79,14 @@ def _centre(axis: int) -> Callable[[Preset], float | None]:
     return own
 
 
-def _materials(name: str) -> Callable[[Scene, float], dict]:
+def _materials(name: str) -> Callable[[Scene, float], Scene]:
     """The same value for all grains and walls."""
 
-    def changes(scene: Scene, value: float) -> dict:
+    def changes(scene: Scene, value: float) -> Scene:
         kinds = ("grain", "wall", "others")
         now = {kind: getattr(scene.grains, kind) for kind in kinds}
         with_it = {kind: tuple(replace(one, **{name: value}) for one in materials) for kind, materials in now.items()}
-        return {"grains": replace(scene.grains, **with_it)}
+        return scene.holding(replace(scene.grains, **with_it))
 
     return changes
 
@@ -139,7 +139,7 @@ CONTROLS: dict[str, Control] = {
         "run.gravity",
         ALTERS,
         lambda preset: None if preset.ship else preset.run.gravity,
-        lambda _, value: {"gravity": value},
+        lambda scene, value: replace(scene, gravity=value),
     ),
     "wave_amplitude": Control("waves", "waves.amplitude", MOVES, _waves("amplitude")),
     "wave_height": Control("sea's height", "waves.height", MOVES, _significant_height),

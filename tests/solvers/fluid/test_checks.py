@@ -57,7 +57,7 @@ def test_what_has_left_an_open_tank_may_fall_as_fast_as_it_will(poured):
 def test_what_is_in_an_open_tank_may_not(poured):
     drops = poured.scene.fluid.particles.copy()
     drops["position"][0, 0], drops["velocity"][0, 0, 1] = (0.0, 0.03), 3.0
-    run = again(poured, replace(poured.scene, fluid=replace(poured.scene.fluid, particles=drops)))
+    run = again(poured, poured.scene.holding(replace(poured.scene.fluid, particles=drops)))
     with pytest.raises(BadState, match=r"water moves at [23.]+.* m/s, Mach 0\.[67]"):
         run.advance(10)
 
@@ -68,7 +68,7 @@ def test_what_comes_back_into_an_open_tank_is_watched_again(poured):
     drops = poured.scene.fluid.particles.copy()
     high = 0.05 + 2.0 * poured.scene.fluid.water.reach
     drops["position"][0, 0], drops["velocity"][0, 0, 1] = (0.0, high), -3.0
-    run = again(poured, replace(poured.scene, fluid=replace(poured.scene.fluid, particles=drops)))
+    run = again(poured, poured.scene.holding(replace(poured.scene.fluid, particles=drops)))
     run.advance(2)
     assert run.snapshot()["water_place"][0, 0, 1] < high
     with pytest.raises(BadState, match=r"water moves at [23.]+.* m/s, Mach 0\.[67].*z = 0\.0[456]"):

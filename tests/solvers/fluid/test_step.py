@@ -1,5 +1,7 @@
 """A step of water in a tank at rest: against double sums in plain numpy, and what it must conserve."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import taichi as ti
@@ -201,7 +203,7 @@ def test_gravity_may_change_while_water_runs(run):
     """Under half of the gravity the water weighs half as much on its tank, and no energy counts as created."""
     again(run, still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD))
     run.observe()
-    run.alter(gravity=0.5 * GRAVITY)
+    run.alter(replace(run.scene, gravity=0.5 * GRAVITY))
     loads = []
     for _ in range(40):  # over some ten times that sound takes through the depth
         run.advance(20)

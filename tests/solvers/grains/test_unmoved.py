@@ -1,7 +1,5 @@
 """Observations before the first step: they give the present state and do not change it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -60,7 +58,7 @@ def test_grains_do_not_answer_for_water_that_stopped_a_world():
     grains, far = run.grains, RADIUS / SPEED
     with pytest.raises(BadState, match="a grain moves at"):
         grains.refuse(0, 0.0, run.dt)
-    grains.scene = replace(run.scene, fluid=Fluid(Water(0.01, 10.0), particles(1, 1)))
+    grains.scene = run.scene.holding(Fluid(Water(0.01, 10.0), particles(1, 1)))
     grains.refuse(0, 0.0, run.dt)
     with pytest.raises(BadState, match="a grain moves at"):
         grains.refuse(0, 0.0, far)

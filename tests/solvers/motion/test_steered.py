@@ -77,29 +77,29 @@ def test_a_change_of_friction_acts_on_existing_contacts(run):
     gained = []
     for friction in (0.3, 0.1):
         other = (replace(grain, friction=friction),)
-        run.alter(grains=replace(run.scene.grains, grain=other, wall=other))
+        run.alter(run.scene.holding(replace(run.scene.grains, grain=other, wall=other)))
         run.advance(round(2e-3 / run.dt))  # the floor bears the grains again
         before, time = run.snapshot(), run.time
         run.advance(round(5e-3 / run.dt))
         gained.append((run.snapshot()["velocity"] - before["velocity"])[0, :, 0].mean() / (run.time - time) + 20.0)
-    run.alter(grains=replace(run.scene.grains, grain=(grain,), wall=(grain,)))
+    run.alter(run.scene.holding(replace(run.scene.grains, grain=(grain,), wall=(grain,))))
     run.restore(start)
     assert gained == [pytest.approx(0.3 * 9.81, rel=0.1), pytest.approx(0.1 * 9.81, rel=0.1)]
 
 
 def test_a_change_of_gravity_acts(run):
     start = run.state()
-    run.alter(gravity=1.62)
+    run.alter(replace(run.scene, gravity=1.62))
     run.launch(velocity=np.tile([0.0, 0.5], (1, 3, 1)))
     run.advance(round(0.05 / run.dt))
     speed = run.snapshot()["velocity"][0, :, 1]
     elapsed = run.time - float(start["run.steps"]) * run.dt
-    run.alter(gravity=9.81)
+    run.alter(replace(run.scene, gravity=9.81))
     run.restore(start)
     assert speed == pytest.approx(0.5 - 1.62 * elapsed, abs=0.02)
 
 
 def test_changes_that_need_shorter_steps_are_refused(run):
     with pytest.raises(Unavailable, match="shorter time steps"):
-        run.alter(gravity=1e4)
+        run.alter(replace(run.scene, gravity=1e4))
     assert run.scene.gravity == 9.81

@@ -198,14 +198,9 @@ def test_tanks_one_behind_the_other():
     whole = aboard(ship())
     half = Tank(whole.outline, 1.0, length=0.25 * LENGTH)
     count = whole.fluid.particles.shape[1]
-    halves = replace(
-        whole,
-        length=0.25 * LENGTH,
-        more_tanks=(half,),
-        fluid=replace(
-            whole.fluid, particles=np.concatenate([whole.fluid.particles] * 2, axis=1), in_tanks=(count, count)
-        ),
-    )
+    twice = np.concatenate([whole.fluid.particles] * 2, axis=1)
+    fluid = replace(whole.fluid, particles=twice, in_tanks=(count, count))
+    halves = whole.holding(fluid, length=0.25 * LENGTH, more_tanks=(half,))
     (_, one), (_, two) = roll(whole, 1.0), roll(halves, 1.0)
     assert np.ptp(one) > 0.02
     assert two == pytest.approx(one, abs=1e-9)

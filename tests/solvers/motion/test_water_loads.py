@@ -31,9 +31,8 @@ def swayed(model: str, rows: int) -> Scene:
     """A tank in each world, swayed at one of the frequencies."""
     scene, worlds = still(WIDTH, 0.2, DEPTH, rows, model=model, smoothing=3.0), len(SHARES)
     moved = [(Sway(SIZE, share * LIQUID.rates[0] / (2.0 * np.pi)),) for share in SHARES]
-    scene = replace(
-        scene,
-        fluid=replace(scene.fluid, particles=np.tile(scene.fluid.particles, (worlds, 1))),
+    scene = scene.holding(
+        replace(scene.fluid, particles=np.tile(scene.fluid.particles, (worlds, 1))),
         motions=moved,
         soft_start=RAMP,
     )

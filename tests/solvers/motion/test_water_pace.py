@@ -15,7 +15,7 @@ PACE, LASTS, EVERY = 8, 1.5, 0.02  # s
 def paced(step: float, pace: int) -> Simulation:
     """A barge with water whose steps are `pace` of hers of `step` (s)."""
     made = aboard(ship())
-    return Simulation(replace(made, step=step, fluid=replace(made.fluid, pace=pace)), threads=1, arch="cpu")
+    return Simulation(made.holding(replace(made.fluid, pace=pace), step=step), threads=1, arch="cpu")
 
 
 @pytest.fixture(scope="module")

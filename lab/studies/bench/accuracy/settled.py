@@ -34,7 +34,7 @@ def settled_scene(
     """The scene of settled beds with an integrator and other changes, and the places (W, n, 2) m they start from."""
     scene, place = settled_places(kind, beds, scale)
     grains = replace(scene.grains, integrator=integrator)
-    return replace(scene, grains=grains, schedule="per-world", **changes), place
+    return scene.holding(grains, schedule="per-world", **changes), place
 
 
 def deviation(found: Mapping[str, np.ndarray], expected: Mapping[str, np.ndarray], diameter: float) -> float:

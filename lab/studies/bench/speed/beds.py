@@ -40,7 +40,7 @@ class Bed:
         radius = np.tile(self.radius, (worlds, 1))
         laws = {name: changes.pop(name) for name in list(changes) if name in Grains.__dataclass_fields__}
         laws = {"tangential": "mindlin", "stiffness_scale": SCALE, **laws}
-        return Scene(tank(self.width), Grains(radius, material, material, **laws), **changes)
+        return Scene(tank(self.width), (Grains(radius, material, material, **laws),), **changes)
 
     def places(self, worlds: int = 1) -> np.ndarray:
         """Positions (W, n, 2) m in as many worlds."""

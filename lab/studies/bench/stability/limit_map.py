@@ -96,14 +96,16 @@ def scene(restitutions, integrator: str, normal: str, friction: str) -> Scene:
     outline, places = packing(normal)
     return Scene(
         outline,
-        Grains(
-            np.full((len(materials), len(places)), RADIUS),
-            materials,
-            materials,
-            normal=normal,
-            tangential=friction,
-            start_speed=SPEED,
-            integrator=integrator,
+        (
+            Grains(
+                np.full((len(materials), len(places)), RADIUS),
+                materials,
+                materials,
+                normal=normal,
+                tangential=friction,
+                start_speed=SPEED,
+                integrator=integrator,
+            ),
         ),
         gravity=0.0,
     )

@@ -37,7 +37,7 @@ class Case:
         outline = np.array(rectangle(self.width, self.height))
         water = Water(**{"spacing": self.spacing, "sound_speed": self.sound_speed, "density": DENSITY} | of_water)
         fluid, how = Fluid(water, np.tile(self.drops, (worlds, 1))), {"precision": precision, "schedule": schedule}
-        return Scene(outline, fluid=fluid, **how)
+        return Scene(outline, (fluid,), **how)
 
     def pool(self, seconds: float, every: float, threads: int = 1) -> Pool:
         """The same for a peer: its pressures are those of the linear equation of state."""

@@ -131,15 +131,17 @@ class Meetings:
         fastest = float(np.hypot(rows[:, 1], rows[:, 3]).max())
         return Scene(
             np.array(rectangle(2.0 * half, half)),
-            Grains(
-                np.tile(size, (len(rows), 1)),
-                own,
-                wall,
-                normal=self.normal,
-                tangential=law,
-                integrator=self.integrator,
-                start_speed=fastest,
-                **more,
+            (
+                Grains(
+                    np.tile(size, (len(rows), 1)),
+                    own,
+                    wall,
+                    normal=self.normal,
+                    tangential=law,
+                    integrator=self.integrator,
+                    start_speed=fastest,
+                    **more,
+                ),
             ),
             gravity=0.0,
         )

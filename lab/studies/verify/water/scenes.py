@@ -60,7 +60,7 @@ def set_going(drops: np.ndarray, velocity: Field) -> None:
 
 def scene(water: Water, drops: np.ndarray, outline: np.ndarray, gravity: float = G, **more) -> Scene:
     """A scene of water alone."""
-    return Scene(outline, fluid=Fluid(water, drops), gravity=gravity, **more)
+    return Scene(outline, (Fluid(water, drops),), gravity=gravity, **more)
 
 
 def resting(water: Water, outline: np.ndarray, depth: float, velocity: Field | None = None) -> Scene:

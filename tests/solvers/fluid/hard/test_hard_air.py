@@ -77,7 +77,7 @@ def test_a_bubble_of_four_spacings_rises():
     share = pressure / (scene.fluid.water.air.density * SOUND**2)
     drops["gas"][inside], drops["excess"][inside] = 1.0, Adiabatic.excess(share)
     drops["velocity"][inside, 1], drops["volume"][inside] = 0.0, SPACING**2
-    scene.fluid = replace(scene.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None])
+    scene = scene.holding(replace(scene.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None]))
     bubble = slice(int((scene.fluid.particles["gas"][0] < 0.5).sum()), None)
     own = (
         np.hypot(

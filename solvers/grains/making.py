@@ -1,0 +1,50 @@
+"""Makes the grains of a scene: state, laws, lists, contacts and mover that fit each other."""
+
+import numpy as np
+
+from solvers.grains.contacts import Contacts
+from solvers.grains.integrators import INTEGRATORS
+from solvers.grains.laws.chosen import ChosenLaws
+from solvers.grains.lists.neighbours import Neighbours
+from solvers.grains.lists.skin import Skin, widths
+from solvers.grains.matter import GrainMatter
+from solvers.grains.mover import Mover
+from solvers.grains.shapes.grains import ShapedState
+from solvers.grains.shapes.rules.area import Area
+from solvers.grains.shapes.rules.contacts import ShapedContacts
+from solvers.grains.shapes.rules.continuous import Continuous
+from solvers.grains.shapes.rules.discrete import Discrete
+from solvers.grains.shapes.rules.lists import ShapedNeighbours
+from solvers.grains.state import GrainState
+from solvers.tank.setting import Setting
+
+RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
+
+
+def make_grains(scene, setting: Setting) -> GrainMatter:
+    """The grains of a scene (`solvers.scene.Scene`)."""
+    given = scene.grains
+    arrays, walls, count = setting.arrays, setting.walls, given.count
+    units = setting.units(count, len(given.fixed))
+    load = setting.load(arrays.under("grains"), units)
+    may_leave = any(tank.open_edges for tank in scene.tanks)
+    state = given.radius, given.density, given.fixed, units.ghosts, may_leave, given.kind
+    integrator = INTEGRATORS[given.integrator]()
+    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator)
+    laws.wide = setting.vectors if laws.fit and given.bears_vectors and not units.single else 0
+    moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
+    grains = GrainState(arrays, *state) if given.shapes is None else ShapedState(arrays, given.shapes, *state)
+    together = given.shapes is None and units.whole
+    early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
+    wide = widths(scene, setting.skin, units.single, together)
+    skin = Skin(arrays, grains, wide, given.longest_bridge, early, together, walls.moving)
+    lists = given.farthest_reach, skin, laws, moduli, setting.room
+    if given.shapes is None:
+        neighbours = Neighbours(arrays, units, grains, walls, *lists)
+        contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
+    else:
+        rule = RULES[given.shapes.contact](arrays, units, walls, given.shapes, laws.wide)
+        neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
+        contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
+    mover = Mover(arrays, units, grains, integrator, setting.carrier.rotating)
+    return GrainMatter(scene, setting, load, grains, neighbours, contacts, mover)
