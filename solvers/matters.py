@@ -36,6 +36,7 @@ def setting_of(run) -> Setting:
         bands=run.units_a_world,
         per_particle=run.schedule_name == "per-grain",
         walls=run.walls,
+        parts=run.parts,
         pieces=run.scene.pieces,
         shares=run.scene.shares,
         carrier=run.carrier,

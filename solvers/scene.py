@@ -29,7 +29,7 @@ class Scene:
     - `outline` (m, 2) m of the tank, counter-clockwise; `open_edges`: its edges without a wall, by their first corners;
       `parts`: plates that move in the tank.
     - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
-      by default all; `more_tanks` stand beside it. Parts and fixed grains belong to the first tank.
+      by default all; `more_tanks` stand beside it. Fixed grains belong to the first tank.
     - `matters`: what the tanks hold, at most one of each kind of `solvers.matters`.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
@@ -116,7 +116,7 @@ class Scene:
     @property
     def shares(self) -> np.ndarray | None:
         """Factors (W, pieces) from each piece's load to that which a carrier answers to; None if none does."""
-        more = self.pieces - len(self.tanks)
+        more = [part.tank for part in self.parts] + [0] * sum(matter.pieces for matter in self.matters)
         return answered_shares(self.tanks, self.vessels, self.axles, more)
 
     @property

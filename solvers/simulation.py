@@ -14,6 +14,7 @@ from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
 from solvers.matters import made, setting_of
 from solvers.motion.carrier import make_carrier
+from solvers.motion.moved import make_pieces
 from solvers.motion.observer import Observer
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
@@ -76,7 +77,8 @@ class Simulation:
         """Make the arrays and the objects whose kernels work on them."""
         scene, worlds = self.scene, self.scene.worlds
         self.arrays = arrays = State(scene.precision)
-        self.walls = Walls(arrays, scene.tanks, scene.parts, scene.apart)
+        self.parts = make_pieces(arrays, scene.parts, worlds)
+        self.walls = Walls(arrays, scene.tanks, self.parts, scene.apart)
         self.carrier = make_carrier(arrays, scene, self.dt)
         setting = setting_of(self)
         matters = made(scene, setting)
@@ -87,7 +89,7 @@ class Simulation:
         sequence = Sequence(matters, self.carrier)
         self.beat, self.wide = sequence.beat, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        self.observer = Observer(arrays, worlds, scene.pieces, self.walls, self.carrier, loads)
+        self.observer = Observer(arrays, worlds, scene.pieces, self.carrier, loads)
         arrays.finish()
 
     @property
@@ -278,15 +280,16 @@ class Simulation:
         now, matters = self.origin + self.time, self.matters.values()
         return {name: values for matter in matters for name, values in matter.snapshot(now).items()}
 
+    def placed(self) -> dict[str, np.ndarray]:
+        """Where the scene's parts are now: displacements (W, P, 2) m and turns (W, P) in the tank."""
+        place, turn = self.parts.places(self.origin + self.time)
+        return {"part": place, "part_turn": turn}
+
     def pressing(self, world: int = 0) -> Pressing:
         """The present elastic contact forces in a world; none without grains."""
         runtime.merge_repeats(self.simple)
         found = (matter.pressing(world, self.origin + self.time) for matter in self.matters.values())
         return next((pressing for pressing in found if pressing), UNTOUCHED)
-
-    def part_places(self) -> np.ndarray:
-        """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""
-        return np.tile(self.walls.places.to_numpy()[: len(self.scene.parts)].astype(float), (self.scene.worlds, 1, 1))
 
     def state(self) -> dict[str, np.ndarray]:
         """The complete state, from which `restore` continues bit for bit."""

@@ -13,6 +13,7 @@ from lab.assembly.ship import make_vessel
 from lab.assembly.water import fluid_of, most_drops, particles, water_aboard
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
+from lab.preset.sections.parts import parts_of
 from lab.preset.sections.water.tanks import further_tanks
 from solvers.fluid.timestep import longest_pace, soft_limit
 from solvers.grains.bed.relaxing import relaxed_start
@@ -47,7 +48,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * worlds,
         soft_start=preset.motion.soft_start,
         open_edges=preset.tank.open_edges,
-        parts=tuple(part.wet if preset.water else part.dry for part in preset.parts.values()),
+        parts=parts_of(preset),
         vessels=vessels(preset) * worlds,
         axles=[preset.axle.solved] * worlds if preset.axle else (),
         thickness=preset.thickness,

@@ -8,6 +8,7 @@ import numpy as np
 
 from lab.assembly.grains import grains_of
 from lab.preset.schema import Preset
+from lab.preset.sections.parts import parts_of
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.given import Shapes
 from solvers.scene import Scene
@@ -46,7 +47,7 @@ def touching(preset: Preset, recorded: Recorded) -> Scene:
         (replace(given, **own, radius=recorded.radius, fixed=recorded.fixed, shapes=shapes),),
         gravity=preset.run.gravity,
         open_edges=tuple(recorded.open_edges),
-        parts=tuple(part.dry for part in preset.parts.values()),
+        parts=parts_of(preset),
         thickness=preset.thickness,
         length=preset.tank.length,
     )

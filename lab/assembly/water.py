@@ -7,8 +7,9 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
+from lab.preset.sections.parts import parts_of
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
-from lab.preset.sections.water.tanks import Pool
+from lab.preset.sections.water.tanks import Pool, outline_at
 from solvers.fluid.given import Fluid, Water
 from solvers.fluid.phases.reduced import Reduced
 from solvers.fluid.start.air import air_above, air_round, with_air
@@ -47,14 +48,14 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     """The particles (n,) of the water in a tank, by default the first. Raises LabError if none fits in."""
     pool = pool or preset.pools[0]
     water = preset.liquid
-    parts = [part.wet for part in preset.parts.values()]
+    parts = [part for part in parts_of(preset) if part.tank == pool.number]
     beside = parts if water.start == "packed" and any(map(is_slanted, parts)) and not water.periodic else []
     if (parts and not beside) or water.periodic:  # a lattice is cut off at bodies and upright plates, or goes on across
         water = replace(water, start="lattice")
     borne = preset.water.radius is None and "z" not in water.periodic
     try:
         gravity = preset.run.gravity if borne else 0.0
-        drops = at_rest(pool.polygon, pool.level, water, gravity, beside, np.array(preset.tank.corners))
+        drops = at_rest(pool.polygon, pool.level, water, gravity, beside, outline_at(preset, pool.number))
         if preset.water.flow:
             _set_going(preset, drops)
         elif preset.water.region is not None:
@@ -63,7 +64,7 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
             return with_air(drops, _air_of(preset, water))
     except ValueError as error:
         raise LabError(f"water.spacing: {error}; take smaller particles.") from None
-    return _cut_off(preset, drops, parts) if parts and not beside else drops
+    return _cut_off(preset, pool, drops, parts) if parts and not beside else drops
 
 
 def _set_going(preset: Preset, drops: np.ndarray) -> None:
@@ -96,9 +97,9 @@ def _let_go(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> None:
     drops["excess"] = hydrostatic_excess(depth, weight, water.sound_speed, water.state)
 
 
-def _cut_off(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> np.ndarray:
+def _cut_off(preset: Preset, pool: Pool, drops: np.ndarray, parts: Sequence[Part]) -> np.ndarray:
     """Those of the particles (n,) of a lattice that parts leave free."""
-    water, (polygon, level) = preset.liquid, bounds(preset)
+    water, polygon, level = preset.liquid, pool.polygon, pool.level
     whole = drops["volume"].sum()
     drops = drops[clear_of(drops["position"], parts, water.spacing)]
     if not len(drops):

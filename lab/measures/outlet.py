@@ -18,8 +18,13 @@ class Outlet:
 
     def lips_at(self, recording: Recording, frame: int) -> np.ndarray:
         """The lips (W, 2, 2), m, in a picture frame."""
-        moved = recording.frames["part"][frame].astype(float)
-        return self.lips + moved[:, list(self.carriers)]
+        moved, carriers = recording.frames["part"][frame].astype(float), list(self.carriers)
+        lips = self.lips + moved[:, carriers]
+        if "part_turn" in recording.frames:
+            turn = recording.frames["part_turn"][frame].astype(float)[:, carriers]
+            c, s, (y, z) = np.cos(turn), np.sin(turn), self.lips.T
+            lips += np.stack([c * y - s * z, s * y + c * z], axis=-1) - self.lips
+        return lips
 
 
 def find_outlet(recording: Recording) -> Outlet | None:

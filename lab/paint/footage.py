@@ -228,12 +228,17 @@ class Bed:
     def plates(self, frame: int) -> list[np.ndarray]:
         """The moving parts, and a sliding mass, as polylines (m, 2) m in the tank frame at their places in a frame."""
         moved, turn = (self._between(values, frame) for values in (self.footage.part, self.footage.part_turn))
-        parts = zip(self.footage.parts.values(), moved, np.cos(turn), np.sin(turn), strict=True)
-        lines = [shift + line @ np.array([[c, s], [-s, c]]) for line, shift, c, s in parts]
+        lines = [moved_line(*part) for part in zip(self.footage.parts.values(), moved, turn, strict=True)]
         rail = self.footage.rail
         return lines + (
             rail.lines(self.world, float(np.interp(frame, np.arange(self.frames), self.footage.time))) if rail else []
         )
+
+
+def moved_line(line: np.ndarray, shift: np.ndarray, turn: float) -> np.ndarray:
+    """A line (m, 2) m as drawn, turned by `turn` (rad) and displaced by `shift` (m)."""
+    c, s = np.cos(turn), np.sin(turn)
+    return shift + line @ np.array([[c, s], [-s, c]])
 
 
 def on_the_way(

@@ -204,7 +204,7 @@ def check(preset: Preset) -> None:
     if preset.grains is not None:
         _check_of_grains(preset)
     check_motion(preset.motion, preset.tank.extent)
-    check_parts(preset.parts, preset.tank.corners, preset.water is not None)
+    check_parts(preset.parts, preset.tank.corners, preset.tanks)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
     check_tanks(preset)
     check_weight(preset)

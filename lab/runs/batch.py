@@ -238,7 +238,7 @@ class Batch:
 
     def _frame(self, rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         """The present values of all quantities of a picture frame, for all worlds."""
-        return {"pose": rows["pose"], "part": self._simulation.part_places(), **self._simulation.snapshot()}
+        return {"pose": rows["pose"], **self._simulation.placed(), **self._simulation.snapshot()}
 
     def _end_lost(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
         """End the runs whose ships have all capsized or flooded, with a last frame; the others continue."""

@@ -11,7 +11,7 @@ from lab.assembly.grains import fixed_of, radii_of
 from lab.assembly.scene import vessels
 from lab.assembly.water import air_volumes_of, volumes_of
 from lab.paint.cargo.looks import Stowage
-from lab.paint.footage import NO_GRAINS, Bed
+from lab.paint.footage import NO_GRAINS, Bed, moved_line
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.paint.water.basins import basins_of
@@ -134,9 +134,11 @@ class LiveFootage:
         """The time of a frame (s)."""
         return self._frames[frame].time
 
-    def moved_parts(self, frame: int) -> np.ndarray:
-        """Displacements (P, 2) m of the parts in a frame."""
-        return self._frames[frame].rows["part"][0]
+    def plates(self, frame: int) -> list[np.ndarray]:
+        """The parts as polylines (m, 2) m in the tank where they are in a frame."""
+        rows = self._frames[frame].rows
+        parts = zip(self.parts.values(), rows["part"][0], rows["part_turn"][0], strict=True)
+        return [moved_line(*part) for part in parts]
 
     def curve(self, name: str, frames: np.ndarray) -> np.ndarray:
         """A quantity of some frames (k, *shape)."""

@@ -52,7 +52,7 @@ class LiveFrame:
     def of(cls, simulation: Simulation, rows: Mapping[str, np.ndarray], pressing: Pressing) -> "LiveFrame":
         """The present state of a simulation, with the rows just observed of it."""
         grains = {name: values.astype(np.float32) for name, values in simulation.snapshot().items()}
-        return cls(simulation.time, {**rows, "part": simulation.part_places()}, grains, pressing)
+        return cls(simulation.time, {**rows, **simulation.placed()}, grains, pressing)
 
     @property
     def bytes(self) -> int:
@@ -150,8 +150,7 @@ class Live:
         rows, now = self.simulation.observe(), self.time
         self.recorder.sample({"time": now, **{name: rows[name] for name in self.recorder.series if name != "time"}})
         if self.pieces % self._a_frame == 0:
-            part = self.simulation.part_places()
-            more = {"part": part, **self._waves(), **self.simulation.snapshot()}
+            more = {**self.simulation.placed(), **self._waves(), **self.simulation.snapshot()}
             self.recorder.frame({"time": now, "pose": rows["pose"], **more})
         self.recorder.grain_steps = updates(self.simulation.scene, self.simulation.steps)
         return rows

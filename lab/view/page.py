@@ -198,8 +198,8 @@ class Page:
             self._paint_water(stage, shown, moved)
         if scale:
             self._paint_grains(stage, shown, moved, scale)
-        for line, shift in zip(footage.parts.values(), footage.moved_parts(frame), strict=True):
-            paint_plate(stage, moved, line + shift, PLATE * self.unit, palette.PART)
+        for line in footage.plates(frame):
+            paint_plate(stage, moved, line, PLATE * self.unit, palette.PART)
         if scale and shown.look.overlay == "forces":
             lines, self._largest = force_strokes(shown, moved)
             paint_strokes(stage, lines, FORCE)

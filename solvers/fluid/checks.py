@@ -102,12 +102,10 @@ def refuse_reduced(scene) -> None:
             raise Unavailable(f"air.reduced: does not go with {name}; leave out one of the two.")
 
 
-def refuse_scene(fills: Sequence[int], parts: int, grains: bool) -> None:
+def refuse_scene(fills: Sequence[int], grains: bool) -> None:
     """Raise Unavailable, one sentence, for a scene in which water cannot be computed.
 
     `fills`: how many particles of water are in each tank; grains are in the first.
     """
     if grains and fills[0]:
         raise Unavailable("water: grains in water are not computed yet; give them tanks of their own.")
-    if parts and len(fills) > 1:
-        raise Unavailable("parts: a tank of water with parts in it stands alone; leave out parts or other tanks.")

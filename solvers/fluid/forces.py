@@ -96,7 +96,7 @@ class Forces:
             found = self.push_block(u, b, b - first, kick)
             if ti.static(self.order.layers > 1):  # noqa: SIM102 (blocks are in the order of the tanks)
                 if self.order.layer(b) != tank:
-                    self.book(u, tank, total - before, dt)
+                    self.book(u, tank, total - before - self.bodies.borne(u, tank), dt)
                     tank, before = self.order.layer(b), total
             total += found
             shown += self.order.weight(b) * found
@@ -113,8 +113,7 @@ class Forces:
             for k in range(self.bodies.count):
                 load = [self.bodies.force[n][u, k] for n in ti.static(range(3))]
                 self.load.book(u, self.outlines + k, ti.Vector([thick * load[n] for n in ti.static(range(3))]), dt)
-                for n in ti.static(range(3)):
-                    before[n] += load[n]  # parts stand in a tank that is alone
+            before += self.bodies.borne(u, tank)
             self.bodies.book(u, kick, dt)
         self.book(u, tank, total - before, dt)
 

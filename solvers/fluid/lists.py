@@ -182,7 +182,7 @@ class Lists:
         lower, upper = self.box(b)
         code = self.seen_in(image, lower, upper)
         start = self.units.world(u) * p.stride + p.wet + bodies.first[0]
-        for row in range(bodies.ends[part], bodies.ends[part + 1]):
+        for row in range(bodies.ends[part], bodies.end_in(part, b)):
             k, far = (start + row) * p.lanes, reach + bodies.radius[row]
             if self.outside(k, lower, upper) < far * far:
                 for lane in range(p.lanes):

@@ -53,7 +53,7 @@ class WaterMatter(Matter):
         behind = Behind(water, scene.tanks, scene.fills)
         grid = grid_round(water, fluid.particles["position"], scene.tanks, setting.walls.bounds, lanes)
         dummy, blocks, first = grid.arranged(behind.points, behind.tanks)
-        self.bodies = Bodies(arrays, scene.parts, water, tank, worlds, lanes)
+        self.bodies = Bodies(arrays, setting.parts, water, scene, lanes)
         self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.gas = fluid.particles["gas"].astype(float)
@@ -67,12 +67,13 @@ class WaterMatter(Matter):
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds, fluid.pace > 1)
-        self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks))
-        self.bodies.join(arrays, p, shares, self.poses, units)
+        of_parts = np.array(self.bodies.tanks, dtype=int)[self.bodies.solids.owner]
+        self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks, of_parts))
+        self.bodies.join(arrays, p, self.order, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
         self.long = pace = Pace(arrays.under("water"), self.lists, fluid.pace)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
-        lean = Lean(arrays, medium, behind, dummy, tank)
+        lean = Lean(arrays, medium, behind, dummy, scene.tanks)
         self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.stiffening = Stiffening(arrays, p, self.constants, scene, setting.stretch)
@@ -264,7 +265,7 @@ class WaterMatter(Matter):
             "pressure": self.census.whole(self.constants.pressures(found[6], self.gas), found[0:2]),
         }
         rows = {f"{phase}_{name}": told[name][:, part] for phase, part in self.phases.items() for name in told}
-        return rows | self.bodies.places(time)
+        return rows
 
     def alter(self, scene) -> None:
         """Go on with another gravity; the account of energy begins anew."""
@@ -294,6 +295,6 @@ def make_water(scene, setting: Setting) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where they do not move one by one. Raises Unavailable."""
     if not scene.fluid.moved:
         return None
-    refuse_scene(scene.fills, len(scene.parts), bool(scene.grains))
+    refuse_scene(scene.fills, bool(scene.grains))
     refuse_reduced(scene)
     return WaterMatter(scene, setting)

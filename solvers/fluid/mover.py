@@ -7,12 +7,12 @@ from solvers.fluid.lists import Medium
 from solvers.fluid.phases.vent import Vent
 from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, THINNEST
 from solvers.fluid.surface.fullness import Fullness
-from solvers.fluid.walls.bodies import AT_END
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
 from solvers.tank.pace import Pace
+from solvers.tank.pieces import AT_END
 
 
 @ti.data_oriented

@@ -29,12 +29,16 @@ class Tanks:
     standing: np.ndarray
 
     @classmethod
-    def of(cls, scene, particles: Particles, slots: np.ndarray, tanks: np.ndarray) -> "Tanks":
-        """Those of a scene, whose dummies are in these slots of the dry blocks, of these `tanks`; parts are in 0."""
+    def of(cls, scene, particles: Particles, slots: np.ndarray, tanks: np.ndarray, parts: np.ndarray) -> "Tanks":
+        """Those of a scene, whose dummies are in these slots of the dry blocks, of these `tanks`.
+
+        Blocks of parts come last: `parts` are the tanks in which these stand.
+        """
         first = next(number for number, fill in enumerate(scene.fills) if fill)
         lengths = np.array([tank.along for tank in scene.tanks])
         standing = np.zeros(max(1, particles.dry), dtype=int)
         standing[slots // particles.lanes] = tanks
+        standing[particles.walls - len(parts) : particles.walls] = parts
         return cls(scene.fills, lengths / lengths[first], standing)
 
 

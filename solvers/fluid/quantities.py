@@ -40,6 +40,5 @@ ESCAPED = Quantity("water_escaped", "1", label="number of a particle outside the
 FRAMES = (
     Quantity("water_place", "m", PLANE, "place of each particle of water in the tank", per="drop"),
     Quantity("water_velocity", "m/s", PLANE, "velocity of each particle of water, relative to the tank", per="drop"),
-    Quantity("part_turn", "rad", label="angle by which each part has turned in the tank", per="part", never=0.0),
     Quantity("water_pressure", "Pa", label="pressure of each particle of water", per="drop"),
 )

@@ -175,14 +175,16 @@ class Contacts:
             if gap[0] > 0.0:
                 approach = ti.cast(radius - gap[0], g.real)
             overlap = greater(approach, 0.0)
-            moved = self.walls.velocity(feature, shift)
+            lever = radius - 0.5 * overlap
+            moved = self.walls.velocity(
+                feature, shift, *[g.place[a][w, i] - lever * normal[a] for a in ti.static(range(g.axes))]
+            )
             velocity = [g.now[a][w, i] - moved[a] for a in ti.static(range(g.axes))]
             spin = g.spin_now[w, i]
-            lever = radius - 0.5 * overlap
+            turning = spin - self.walls.rate(feature, shift)
             rate, slip = -dot(velocity, normal), tangent.slip(velocity, normal, lever * spin)
-            fn, ft, roll = self.laws.forces(
-                WALL, contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), ti.Vector([slip]), ti.Vector([spin]), dt
-            )
+            met = [ti.Vector([value]) for value in ti.static([approach, rate, slip, turning])]
+            fn, ft, roll = self.laws.forces(WALL, contacts, u, p, *met, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
             force = tangent.force(normal, fn[0], ft[0])

@@ -122,7 +122,7 @@ class GrainMatter(Matter):
         if moved == 0.0:  # there are lists; without, it says NEVER
             moved = wear.moved(u)
             if ti.static(wear.walls.moving):
-                moved += 2.0 * wear.walls.gone(self.units.world(u), wear.built_at[u], t)
+                moved += 2.0 * wear.walls.moved.gone(self.units.world(u), wear.built_at[u], t)
         return moved
 
     @ti.func

@@ -168,9 +168,8 @@ class LiquidMatter(Matter):
                 moved = one.moved(start["position"][w, own])
                 place[w, own] += moved @ way[w, k, : len(one.mass)]
                 velocity[w, own] = moved @ fast[w, k, : len(one.mass)]
-        parts = {"part": np.zeros((len(start), 0, 2)), "part_turn": np.zeros((len(start), 0))}
         still = np.zeros(start.shape)
-        return {"water_place": place, "water_velocity": velocity, "water_pressure": still, **parts}
+        return {"water_place": place, "water_velocity": velocity, "water_pressure": still}
 
 
 def make_liquid(scene, setting: Setting) -> LiquidMatter | None:

@@ -31,15 +31,15 @@ def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | AsK |
 
 
 def answered_shares(
-    tanks: Sequence[Tank], vessels: Sequence[Vessel], axles: Sequence[Axle], more: int
+    tanks: Sequence[Tank], vessels: Sequence[Vessel], axles: Sequence[Axle], more: Sequence[int]
 ) -> np.ndarray | None:
     """Factors (W, pieces) from each piece's load to what the carrier answers to; None for prescribed motions.
 
-    That is the load per metre of a ship, or that on the whole tank of an axle. `more` pieces are of the first tank.
+    That is the load per metre of a ship, or that on the whole tank of an axle. `more`: the tanks of further pieces.
     """
     rows = [[tank.share(vessel.length) for tank in tanks] for vessel in vessels]
     rows = rows or [[axle.share(tank.thickness) for tank in tanks] for axle in axles]
-    return np.array([[*row, *row[:1] * more] for row in rows]) if rows else None
+    return np.array([[*row, *(row[tank] for tank in more)] for row in rows]) if rows else None
 
 
 def limits_of_carrier(vessels: Sequence[Vessel], axles: Sequence[Axle], gravity: float) -> list[Limit]:

@@ -1,10 +1,14 @@
-"""The move of a part along one axis, as a motion: it speeds up, goes on steadily, and brakes."""
+"""How parts move: the move of one along an axis, as a motion, and what carries each of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import taichi as ti
 
+from solvers.machine.state import State
+from solvers.motion.prescribed import Prescribed
 from solvers.tank.parts import Part, travel
+from solvers.tank.pieces import Pieces
 
 
 @ti.func
@@ -43,4 +47,13 @@ class Moved:
 def motions_of(part: Part) -> tuple:
     """All motions of a part: its move along each axis, then the others that a body has."""
     moves = tuple(Moved(part, axis) for axis in range(2) if part.move[axis])
-    return (*moves, *getattr(part, "motions", ()))
+    return (*moves, *part.motions)
+
+
+def make_pieces(arrays: State, parts: Sequence[Part], worlds: int) -> Pieces:
+    """The parts of a scene as pieces; one that never moves has no carrier."""
+    moves = [[motions_of(part)] * worlds for part in parts]
+    carriers = [
+        Prescribed(arrays.under(f"parts.{k}"), each, 0.0, 0.0) if each[0] else None for k, each in enumerate(moves)
+    ]
+    return Pieces(arrays, parts, carriers, worlds)

@@ -10,7 +10,6 @@ from solvers.machine.quantity import parted, places
 from solvers.machine.state import Axis, State
 from solvers.tank import quantities as tank
 from solvers.tank.load import Load
-from solvers.tank.walls import Walls
 
 
 @ti.data_oriented
@@ -22,8 +21,8 @@ class Observer:
     has the column in which each begins.
     """
 
-    def __init__(self, arrays: State, worlds: int, pieces: int, walls: Walls, carrier, loads: Sequence[Load]):
-        self.worlds, self.walls, self.carrier, self.loads = worlds, walls, carrier, tuple(loads)
+    def __init__(self, arrays: State, worlds: int, pieces: int, carrier, loads: Sequence[Load]):
+        self.worlds, self.carrier, self.loads = worlds, carrier, tuple(loads)
         self.exact, self.pieces = arrays.exact, pieces
         self.quantities = tank.SERIES
         self.at = SimpleNamespace(**places(self.quantities))
@@ -43,8 +42,6 @@ class Observer:
         """Fill the rows, and set the loads' sums to zero."""
         for w in range(self.worlds):
             self.observe_world(w, time, since)
-            if w == 0:
-                self.walls.note_places(time)
 
     @ti.func
     def observe_world(self, w, time, since):

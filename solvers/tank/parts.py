@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import hypot, sqrt
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import taichi as ti
 
@@ -44,6 +44,9 @@ class Part:
     start: Annotated[float, Unit("s"), Interval(ge=0), Doc("When it begins to move.")] = 0.0
     speed: Annotated[float, Unit("m/s"), Interval(ge=0), Doc("Its top speed.")] = 0.0
     acceleration: Annotated[float, Unit("m/s^2"), Interval(ge=0), Doc("How fast it speeds up, and brakes.")] = 0.0
+    closed: ClassVar = False
+    motions: ClassVar = ()
+    tank: ClassVar = 0
 
     @property
     def way(self) -> float:
@@ -70,14 +73,15 @@ class Part:
 
 @dataclass(frozen=True)
 class Body(Part):
-    """A part in water: a thin plate between two points or, if it is `closed`, a solid polygon.
+    """A part with motions of its own; in water a thin plate between two points or, if it is `closed`, a solid polygon.
 
     Its `motions` are those that a tank may have (`solvers.motion`), in the tank's frame, from the drawn place on; they
-    follow its `move`. They begin with the tank's own motion.
+    follow its `move`. They begin with the tank's own motion. `tank` is the number of the tank in which it stands.
     """
 
     closed: bool = False
     motions: tuple = ()
+    tank: int = 0
 
     def fastest(self) -> float:
         """Bound on the speed (m/s) of its corners."""

@@ -12,7 +12,11 @@ WALL_FORCE = Quantity(
     "wall_force", "N, N, N m", FREEDOMS, "force of the cargo on the tank, in the tank's axes", mean=True
 )
 SERIES = (POSE, POSE_RATE, WALL_FORCE)
-FRAMES = (POSE, Quantity("part", "m", PLANE, "displacement of each moving part in the tank", per="part"))
+FRAMES = (
+    POSE,
+    Quantity("part", "m", PLANE, "displacement of each moving part in the tank", per="part"),
+    Quantity("part_turn", "rad", label="angle by which each part has turned in the tank", per="part", never=0.0),
+)
 OF_AXLE = (
     Quantity("axle_moment", "N m", label="moment of the cargo on the whole tank about the axle", mean=True),
     Quantity("axle_slide", "m", label="place of the sliding mass along its rail"),

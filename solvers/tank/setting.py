@@ -7,17 +7,19 @@ import numpy as np
 from solvers.machine.state import Scope, State
 from solvers.machine.units import Units
 from solvers.tank.load import Load
+from solvers.tank.pieces import Pieces
 from solvers.tank.walls import Walls
 
 
 @dataclass(frozen=True)
 class Setting:
-    """The arrays of a simulation of W `worlds`, the walls of its tanks, their `pieces`, and their `carrier`.
+    """The arrays of a simulation of W `worlds`, its tanks' walls, the `parts` in them, and the `carrier`.
 
-    A world is cut into `bands`, or with `per_particle` into single particles. `shares` (W, pieces) are the factors with
-    which the carrier responds to the load on each piece (`Load`). Lists of grains have the `skin` (m), if one is given.
-    All lists have `room` times the usual length, and what is usual of water is shared `among` so many worlds. Steps are
-    up to `stretch` base steps long. `vectors`: lanes of a block of pairs of grains on real vectors, 0 without these.
+    A world is cut into `bands`, or with `per_particle` into single particles. `pieces` things bear loads; `shares`
+    (W, pieces) are the factors with which the carrier responds to the load on each (`Load`). Lists of grains have the
+    `skin` (m), if one is given. All lists have `room` times the usual length, and what is usual of water is shared
+    `among` so many worlds. Steps are up to `stretch` base steps long. `vectors`: lanes of a block of pairs of grains on
+    real vectors, 0 without these.
     `wide`: whether all matters made before are on real vectors. Kernels hold all matters, and one that is on real
     vectors can hold no scalars of particles: Taichi then aborts.
     """
@@ -27,6 +29,7 @@ class Setting:
     bands: int
     per_particle: bool
     walls: Walls
+    parts: Pieces
     pieces: int
     shares: np.ndarray | None
     carrier: object

@@ -5,14 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
-from solvers.machine.state import Axis, State
-from solvers.tank.parts import Part, travel
+from solvers.machine.state import State
+from solvers.tank.parts import Part
+from solvers.tank.pieces import COSINE, RATE, SINE, V_Y, V_Z, Pieces
+from solvers.tank.pieces import Y as O_Y
+from solvers.tank.pieces import Z as O_Z
 from solvers.tank.tank import Tank
 
 Y, Z, ALONG_Y, ALONG_Z, LENGTH, TWO_SIDED, PART = range(7)
 AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # columns that in a corner's row hold the direction of the segment after it
-MOVE = 4  # index of the move (y, z; m) in a part's parameters
-SHIFT = 4  # numbers per part: its displacement (m) and velocity (m/s), y and z
 BEYOND = 0.5  # margin round an open tank in which spilled grains are followed, in its own width and height
 CHIMNEY = 5.0  # height above the mouth at which a grain still counts as in the tank, in the tank's size
 
@@ -24,18 +25,20 @@ class Walls:
     Features are segments and corners. A grain touches a segment only if its centre projects onto it, and a corner only
     beyond the ends of both of the corner's segments, so no contact counts twice. The walls of a closed tank act on the
     inside only, and only its re-entrant corners count. The walls of an open tank and the parts are plates without
-    thickness, which act on both sides and round their edges. Tanks `apart`, by their numbers, are not among these: they
-    hold no grains, and may overlap with those that do.
+    thickness, which act on both sides and round their edges; so are closed parts, whose inside is empty. Tanks `apart`,
+    by their numbers, are not among these, with the parts in them: they hold no grains, and may overlap with those that
+    do. Functions of a feature take the poses of all pieces, as `Pieces.at` tells them.
     """
 
-    def __init__(self, arrays: State, tanks: Sequence[Tank], parts: Sequence[Part] = (), apart: Sequence[int] = ()):
+    def __init__(self, arrays: State, tanks: Sequence[Tank], pieces: Pieces, apart: Sequence[int] = ()):
+        parts, self.moved = pieces.parts, pieces
         self.tanks = len(tanks)
         self.outline = np.concatenate([tank.outline for tank in tanks])
         self.parts, self.pieces = len(parts), len(tanks) + len(parts)
         joint = {number: tank for number, tank in enumerate(tanks) if number not in apart}
         self.open = any(tank.open_edges for tank in joint.values())
         plates = [_shell(tank, number) for number, tank in joint.items()]
-        plates += [_plate(part, number) for number, part in enumerate(parts)]
+        plates += [_plate(part, number) for number, part in enumerate(parts) if part.tank not in apart]
         segments = [row for plate in plates for row in plate.segments]
         corners = [row for plate in plates for row in plate.corners]
         self.segments, self.corners = len(segments), len(corners)
@@ -43,12 +46,7 @@ class Walls:
         self.rows = np.array(segments + corners, dtype=np.float64)
         own = arrays.under("walls")
         self.table = own.holding("table", self.rows, "feature number", own.place)
-        self.fastest = max((part.fastest() for part in parts), default=0.0)  # m/s
-        self.moving = self.fastest > 0.0
-        rows = np.array([part.parameters() for part in parts]) if parts else np.zeros((1, MOVE + 2))
-        self.programmes = own.holding("programmes", rows, "part number", own.exact)
-        places = Axis("part", max(1, len(parts))), Axis("direction", 2)
-        (self.places,) = own.reals(places, "places", kept=False)  # displacements (m) when last noted
+        self.fastest, self.moving, self.turning = pieces.fastest, pieces.moving, pieces.turning  # m/s
         edges = _edges([_with_chimneys(tank.outline, tank.open_edges) for tank in joint.values()])
         self.mouth_edges = len(edges)
         self.mouth = own.holding("mouth", edges, "edge number", own.place)
@@ -68,31 +66,8 @@ class Walls:
 
     @ti.func
     def shift(self, w, t):
-        """Displacements and velocities of the parts at time t."""
-        state = ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(max(1, SHIFT * self.parts)))])
-        for p in ti.static(range(self.parts)):
-            s = travel(self.programmes, p, 0, t)
-            for k in ti.static(range(2)):
-                state[SHIFT * p + k] = ti.cast(s[0] * self.programmes[p, MOVE + k], self.real)
-                state[SHIFT * p + 2 + k] = ti.cast(s[1] * self.programmes[p, MOVE + k], self.real)
-        return state
-
-    @ti.func
-    def note_places(self, t):
-        """Store the parts' displacements at time t in `places`."""
-        shift = self.shift(0, t)
-        for p in ti.static(range(self.parts)):
-            self.places[p, 0], self.places[p, 1] = shift[SHIFT * p], shift[SHIFT * p + 1]
-
-    @ti.func
-    def gone(self, w, since, t):
-        """Largest displacement (m) of any part between two times."""
-        before, now = self.shift(w, since), self.shift(w, t)
-        farthest = ti.cast(0.0, self.real)
-        for p in ti.static(range(self.parts)):
-            dy, dz = now[SHIFT * p] - before[SHIFT * p], now[SHIFT * p + 1] - before[SHIFT * p + 1]
-            farthest = ti.max(farthest, ti.sqrt(dy * dy + dz * dz))
-        return farthest
+        """The poses of all pieces at time t (s)."""
+        return self.moved.at(w, t)
 
     @ti.func
     def piece(self, feature):
@@ -102,26 +77,61 @@ class Walls:
 
     @ti.func
     def from_start(self, feature, shift: ti.template(), y, z):
-        """The vector (m) from the start of a feature to the point (y, z)."""
+        """The vector (m) from the start of a feature to the point (y, z), in the axes in which the feature is drawn."""
         py, pz = y - self.table[feature, Y], z - self.table[feature, Z]
         if ti.static(self.parts > 0):
             part = ti.cast(self.table[feature, PART], ti.i32)
             for p in ti.static(range(self.parts)):
+                first = ti.static(self.moved.size * p)
                 if part == p:
-                    py -= shift[SHIFT * p]
-                    pz -= shift[SHIFT * p + 1]
+                    if ti.static(self.turning):
+                        far_y, far_z = y - shift[first + O_Y], z - shift[first + O_Z]
+                        cos, sin = shift[first + COSINE], shift[first + SINE]
+                        py = cos * far_y + sin * far_z - self.table[feature, Y]
+                        pz = cos * far_z - sin * far_y - self.table[feature, Z]
+                    else:
+                        py -= shift[first + O_Y]
+                        pz -= shift[first + O_Z]
         return ti.Vector([py, pz])
 
     @ti.func
-    def velocity(self, feature, shift: ti.template()):
-        """Velocity (m/s) of a feature in the tank's frame."""
+    def turned(self, feature, shift: ti.template(), y, z):
+        """A vector of the axes in which a feature is drawn, in those of the tank."""
+        ty, tz = y, z
+        if ti.static(self.turning):
+            part = ti.cast(self.table[feature, PART], ti.i32)
+            for p in ti.static(range(self.parts)):
+                first = ti.static(self.moved.size * p)
+                if part == p:
+                    cos, sin = shift[first + COSINE], shift[first + SINE]
+                    ty, tz = cos * y - sin * z, sin * y + cos * z
+        return ti.Vector([ty, tz])
+
+    @ti.func
+    def velocity(self, feature, shift: ti.template(), y, z):
+        """Velocity (m/s) of the point (y, z) of a feature in the tank's frame."""
         v = ti.Vector([ti.cast(0.0, self.real), ti.cast(0.0, self.real)])
         if ti.static(self.parts > 0):
             part = ti.cast(self.table[feature, PART], ti.i32)
             for p in ti.static(range(self.parts)):
+                first = ti.static(self.moved.size * p)
                 if part == p:
-                    v = ti.Vector([shift[SHIFT * p + 2], shift[SHIFT * p + 3]])
+                    v = ti.Vector([shift[first + V_Y], shift[first + V_Z]])
+                    if ti.static(self.turning):
+                        v[0] -= shift[first + RATE] * ti.cast(z - shift[first + O_Z], self.real)
+                        v[1] += shift[first + RATE] * ti.cast(y - shift[first + O_Y], self.real)
         return v
+
+    @ti.func
+    def rate(self, feature, shift: ti.template()):
+        """Rate (rad/s) at which a feature turns in the tank's frame."""
+        rate = ti.cast(0.0, self.real)
+        if ti.static(self.turning):
+            part = ti.cast(self.table[feature, PART], ti.i32)
+            for p in ti.static(range(self.parts)):
+                if part == p:
+                    rate = shift[ti.static(self.moved.size * p + RATE)]
+        return rate
 
     @ti.func
     def gap(self, feature, shift: ti.template(), y, z):
@@ -147,6 +157,9 @@ class Walls:
             normal_y, normal_z = py / distance, pz / distance
             if along <= 0.0 or beyond >= 0.0:
                 distance = 1e30
+        if ti.static(self.turning):
+            normal = self.turned(feature, shift, normal_y, normal_z)
+            normal_y, normal_z = normal[0], normal[1]
         return ti.Vector([distance, normal_y, normal_z])
 
     @ti.func
@@ -242,13 +255,14 @@ def _shell(tank: Tank, number: int) -> _Features:
 
 
 def _plate(part: Part, number: int) -> _Features:
-    """The features of a part, an open polyline."""
+    """The features of a part: an open polyline, or a polygon."""
     points = np.asarray(part.points, dtype=np.float64)
-    plate = _Features(True, float(number))
-    for k in range(len(points) - 1):
-        plate.add_segment(points[k], points[k + 1])
-    for k in range(len(points)):
-        plate.add_corner(points, k - 1 if k else None, k, k < len(points) - 1)
+    plate, count = _Features(True, float(number)), len(points)
+    for k in range(count if part.closed else count - 1):
+        plate.add_segment(points[k], points[(k + 1) % count])
+    for k in range(count):
+        before = (k - 1) % count if k or part.closed else None
+        plate.add_corner(points, before, k, k < count - 1 or part.closed)
     return plate
 
 

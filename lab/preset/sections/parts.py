@@ -18,11 +18,12 @@ MOST_PARTS = 50
 
 @dataclass(frozen=True)
 class PartGroup(solved.Part):
-    """A part of the tank: thin plates along a polyline, or in water a plate between two points, or a solid body.
+    """A part of the tank: thin plates along a polyline, or a solid body; in water a plate has two points.
 
     From `start` (s after the tank's motion begins) it is displaced by `move` in the tank's frame: it accelerates with
     `acceleration` up to `speed`, and brakes likewise at the end. If the way is too short to reach `speed`, the top
-    speed is lower. A part whose `move` is zero stands still. In water it may also have motions as the tank has.
+    speed is lower. A part whose `move` is zero stands still. It may also have motions as the tank has. It is drawn in
+    the axes of [tank], in whichever tank it stands.
     """
 
     @property
@@ -34,43 +35,45 @@ class PartGroup(solved.Part):
 
     def fastest(self) -> float:
         """Bound on its speed (m/s), by its move and its motions."""
-        return self.wet.fastest()
+        return self.solved().fastest()
 
     @property
     def line(self) -> tuple[Point, ...]:
         """The corners (m) as a line to draw; that of a body ends where it begins."""
         return (*self.points, self.points[0]) if self.closed else self.points
 
-    @property
-    def dry(self) -> solved.Part:
-        """The part among grains."""
-        return solved.Part(self.points, self.move, self.start, self.speed, self.acceleration)
-
-    @property
-    def wet(self) -> solved.Body:
-        """The part in water."""
-        motions = tuple(self.moves.values())
-        return solved.Body(self.points, self.move, self.start, self.speed, self.acceleration, self.closed, motions)
+    def solved(self, tank: int = 0) -> solved.Body:
+        """The part as the solver takes it, in the tank of this number."""
+        motions, move = tuple(self.moves.values()), (self.move, self.start, self.speed, self.acceleration)
+        return solved.Body(self.points, *move, self.closed, motions, tank)
 
 
-KEYS = [("closed", Annotated[bool, Doc("Whether it is a solid body, for water alone.")], False)]
-KEYS += [(name, Annotated[kind | None, Doc(f"Its {name}, in water.")], None) for name, kind in MOTIONS.items()]
-KEYS.append(("history", Annotated[Record | None, Doc("Its motion from a file, in water.")], None))
+WHERE = "The tank in which it stands, by its name in [tanks]; by default it is [tank]."
+KEYS = [("closed", Annotated[bool, Doc("Whether it is a solid body.")], False)]
+KEYS.append(("tank", Annotated[str | None, Doc(WHERE)], None))
+KEYS += [(name, Annotated[kind | None, Doc(f"Its {name}.")], None) for name, kind in MOTIONS.items()]
+KEYS.append(("history", Annotated[Record | None, Doc("Its motion from a file.")], None))
 Part = make_dataclass("Part", KEYS, bases=(PartGroup,), frozen=True)
-"""A part, with its motions in water, any of which may be left out."""
+"""A part, with its motions, any of which may be left out."""
 Part.__module__ = __name__  # so that it can be sent to another process
 
 
-def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], wet: bool) -> None:
-    """Raise LabError for the first fault of a part; `outline` is the tank's (m); `wet`: it holds water."""
+def parts_of(preset) -> tuple[solved.Body, ...]:
+    """The parts of a preset as the solver takes them."""
+    numbers = {name: number for number, name in enumerate(preset.tanks, start=1)}
+    return tuple(part.solved(numbers.get(part.tank, 0)) for part in preset.parts.values())
+
+
+def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], tanks: Mapping[str, object]) -> None:
+    """Raise LabError for the first fault of a part; `outline` is that of [tank] (m), `tanks` are the further ones."""
     if len(parts) > MOST_PARTS:
         raise LabError(f"parts: at most {MOST_PARTS} are possible (got {len(parts)}).")
     for name, part in parts.items():
         for key, fault in _faults(part, outline):
             raise LabError(f"parts.{name}.{key}: {fault}.")
-        for key, _, default in () if wet else KEYS:
-            if getattr(part, key) != default:
-                raise LabError(f"parts.{name}.{key}: goes with water, and there is none; leave this out.")
+        if part.tank is not None and part.tank not in tanks:
+            others = f"one of {', '.join(tanks)}" if tanks else "no further tanks here"
+            raise LabError(f"parts.{name}.tank: is {part.tank!r}, and there are {others}; leave it out for [tank].")
         _check_motions(part, f"parts.{name}", _larger_side(outline))
 
 
@@ -101,7 +104,7 @@ def _faults(part: Part, outline: Sequence[Point]) -> Iterator[tuple[str, str]]:
         if points[k] == points[k - 1]:
             yield f"points[{k}]", "the same point as the one before; a plate needs a length"
     for k, point in enumerate(points):
-        if not _near(point, outline):
+        if part.tank is None and not _near(point, outline):
             place = ", ".join(show(x, "m") for x in point)
             yield f"points[{k}]", f"{place} is farther from the tank than the tank is large"
     if part.way:

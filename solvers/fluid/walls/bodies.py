@@ -1,24 +1,19 @@
 """Bodies and plates that move in the water: where their dummies are, and what they do to it."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Water
+from solvers.fluid.order import Order
 from solvers.fluid.state import UNUSED, Particles, Shares
-from solvers.fluid.walls.sight import COSINE, RATE, SINE, V_Y, V_Z, Sight, Y, Z
+from solvers.fluid.walls.sight import Sight
 from solvers.fluid.walls.solids import Solids
 from solvers.machine.state import Axis, State, padded, roomy
-from solvers.motion.moved import motions_of
 from solvers.motion.poses import AT_START, Poses
-from solvers.motion.prescribed import Prescribed
 from solvers.space.axes import dot
-from solvers.tank.parts import Part
-from solvers.tank.tank import Tank
+from solvers.tank.pieces import COSINE, NUMBERS, RATE, SINE, V_Y, V_Z, Pieces, Y, Z
 
 USUAL = 4096  # dummies of bodies for which there is room at least
-AT_END = 2  # of a step, beside its start and its middle
 
 
 @ti.data_oriented
@@ -35,20 +30,18 @@ class Bodies:
     parts; J/m) what the parts have done on the water by the last kick, `power` (units, parts; W/m) in it.
     """
 
-    def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int, lanes: int):
-        self.count, self.lanes, self.worlds = len(parts), lanes, worlds
-        self.solids, self.reach = Solids(parts, water, lanes), water.reach
+    def __init__(self, arrays: State, pieces: Pieces, water: Water, scene, lanes: int):
+        parts = pieces.parts
+        self.pieces, self.count, self.lanes, self.worlds = pieces, len(parts), lanes, scene.worlds
+        self.tanks = [part.tank for part in parts]
+        wet = [scene.fills[tank] > 0 for tank in self.tanks]  # others stand among grains
+        self.solids, self.reach = Solids(parts, water, lanes, wet), water.reach
         self.rows = len(self.solids.places)
-        self.sight = Sight(arrays, parts, water, tank, worlds)
-        self.farthest = [max(float(np.hypot(*point)) for point in part.points) for part in parts]
-        self.fastest = max((part.fastest() for part in parts), default=0.0)
-        self.carriers = [
-            Prescribed(arrays.under(f"parts.{k}"), [motions_of(part)] * worlds, 0.0, 0.0)
-            for k, part in enumerate(parts)
-        ]
+        self.sight = Sight(arrays, parts, water, scene, wet)
+        self.fastest, self.moving = pieces.fastest, pieces.moving
         self.slips = water.slip
-        self.moving = any(carrier.moving for carrier in self.carriers)
         if parts:
+            self.poses, self.pull, self.way = pieces.poses, pieces.pull, pieces.way
             self._declare(arrays.under("bodies"))
 
     def _declare(self, own: State) -> None:
@@ -64,20 +57,16 @@ class Bodies:
         ]
         self.radius = own.holding("radius", padded(self.solids.radius, room), "row")
         self.owner = own.holding("owner", padded(self.solids.owner, room), "row", ti.i32)
-        self.arms = own.holding("arms", np.array(self.farthest), "part", own.exact)
         self.ends = own.holding("ends", self.solids.ends, "end", ti.i32)
-        world, part = Axis("world", self.worlds), Axis("part", self.count)
-        (self.pose,) = own.reals((world, part, Axis("number", 21)), "pose", kind=own.exact, kept=False)
-        self.pull = own.reals((world, part), "pull_y", "pull_z", "pull_turn", kind=own.exact, kept=False)
-        (self.way,) = own.reals((world,), "way", kept=False)
+        self.tank = own.holding("tank", np.array(self.tanks), "part", ti.i32)
 
-    def join(self, arrays: State, particles: Particles, shares: Shares, poses: Poses, units) -> None:
+    def join(self, arrays: State, particles: Particles, order: Order, shares: Shares, poses: Poses, units) -> None:
         """Take the `particles` among which the dummies are, and the tank's `poses`; count for these `units`."""
-        self.particles, self.shares, self.poses, self.units = particles, shares, poses, units
+        self.particles, self.order, self.shares, self.of_tank, self.units = particles, order, shares, poses, units
         if self.count:
             first = np.array([particles.walls - self.rows])  # of the dry blocks
             self.first = arrays.under("bodies").holding("first", first, "one", ti.i32)
-            self.sight.join(arrays, particles, padded(self.solids.owner, self.room), self.first)
+            self.sight.join(arrays, particles, padded(self.solids.owner, self.room), self.first, order)
             own, each = arrays.under("bodies"), (units.axis, Axis("part", self.count))
             names = "impulse_y", "impulse_z", "impulse_turn", "work", "power"
             *self.impulse, self.work, self.power = own.reals(each, *names, kind=own.exact)
@@ -92,40 +81,26 @@ class Bodies:
     @ti.func
     def note(self, w, t, dt):
         """Note how the parts of a world move in the step of dt (s) from time t (s)."""
-        half, farthest = 0.5 * ti.cast(dt, self.exact), ti.cast(0.0, self.exact)
-        for k in ti.static(range(self.count)):
-            for part in range(3):
-                first = 7 * part
-                self.pose[w, k, first + COSINE] = 1.0
-                if ti.static(self.carriers[k].moving):
-                    s = self.carriers[k].kinematics(w, t + part * half)
-                    self.pose[w, k, first + Y], self.pose[w, k, first + Z] = s[0], s[1]
-                    self.pose[w, k, first + COSINE], self.pose[w, k, first + SINE] = ti.cos(s[2]), ti.sin(s[2])
-                    self.pose[w, k, first + V_Y], self.pose[w, k, first + V_Z] = s[3], s[4]
-                    self.pose[w, k, first + RATE] = s[5]
-                    fast = ti.sqrt(s[3] * s[3] + s[4] * s[4]) + ti.abs(s[5]) * self.arms[k]
-                    farthest = ti.max(farthest, fast * 2.0 * half)
-                    if part == AT_START:
-                        self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k] = s[6], s[7], s[8]
-        self.way[w] = ti.cast(farthest, self.particles.real)
+        self.pieces.note(w, t, dt)
         if ti.static(len(self.sight.plates) > 0):
-            self.sight.note(w, self.pose)
+            self.sight.note(w, self.poses)
 
     @ti.func
     def place(self, u, part: ti.template()):
         """Place a unit's dummies of moving parts where they are at a `part` of the step, with the velocity there."""
-        p, at = self.particles, ti.static(7 * part)
+        p, at = self.particles, ti.static(NUMBERS * part)
         w = self.units.world(u)
         first, end = self.shares.dry(u)
         for b in range(ti.max(first, w * p.stride + p.wet + self.first[0]), end):
             row = self.row(b)
             k = self.owner[row]
-            cos, sin = self.pose[w, k, at + COSINE], self.pose[w, k, at + SINE]
-            rate = self.pose[w, k, at + RATE]
-            v_y, v_z, turn = self.pose[w, k, at + V_Y], self.pose[w, k, at + V_Z], ti.cast(0.0, self.exact)
-            o_y, o_z = self.pose[w, k, at + Y], self.pose[w, k, at + Z]
-            if ti.static(self.poses.moving):
-                v_y, v_z, turn = v_y + self.poses.walls[0][w], v_z + self.poses.walls[1][w], self.poses.walls[2][w]
+            cos, sin = self.poses[w, k, at + COSINE], self.poses[w, k, at + SINE]
+            rate = self.poses[w, k, at + RATE]
+            v_y, v_z, turn = self.poses[w, k, at + V_Y], self.poses[w, k, at + V_Z], ti.cast(0.0, self.exact)
+            o_y, o_z = self.poses[w, k, at + Y], self.poses[w, k, at + Z]
+            if ti.static(self.of_tank.moving):
+                v_y, v_z = v_y + self.of_tank.walls[0][w], v_z + self.of_tank.walls[1][w]
+                turn = self.of_tank.walls[2][w]
             for lane in range(p.lanes):
                 if p.number[b, lane] != UNUSED:
                     y, z = ti.cast(self.rest[0][row, lane], self.exact), ti.cast(self.rest[1][row, lane], self.exact)
@@ -140,9 +115,9 @@ class Bodies:
         """Turn the vectors of a block of dummies, as their part is drawn, as it is at a `part` of the step."""
         row = self.row(b)
         if row >= 0:
-            w, k, at = b // self.particles.stride, self.owner[row], ti.static(7 * part)
-            cos = ti.cast(self.pose[w, k, at + COSINE], self.particles.real)
-            sin = ti.cast(self.pose[w, k, at + SINE], self.particles.real)
+            w, k, at = b // self.particles.stride, self.owner[row], ti.static(NUMBERS * part)
+            cos = ti.cast(self.poses[w, k, at + COSINE], self.particles.real)
+            sin = ti.cast(self.poses[w, k, at + SINE], self.particles.real)
             y, z = vector[0], vector[1]
             vector[0], vector[1] = cos * y - sin * z, sin * y + cos * z
 
@@ -155,10 +130,10 @@ class Bodies:
         if row >= 0:
             k = self.owner[row]
             a_y, a_z, up = self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k]
-            v_y, v_z, rate = self.pose[w, k, V_Y], self.pose[w, k, V_Z], self.pose[w, k, RATE]
-            o_y, o_z = self.pose[w, k, Y], self.pose[w, k, Z]
-            if ti.static(self.poses.rotating):
-                turn = 2.0 * self.poses.felt[4][w]
+            v_y, v_z, rate = self.poses[w, k, V_Y], self.poses[w, k, V_Z], self.poses[w, k, RATE]
+            o_y, o_z = self.poses[w, k, Y], self.poses[w, k, Z]
+            if ti.static(self.of_tank.rotating):
+                turn = 2.0 * self.of_tank.felt[4][w]
         y, z = p.offset(b, ti.cast(o_y, p.where), 0), p.offset(b, ti.cast(o_z, p.where), 1)
         # Variables keep their type, and whole vectors cannot be cast: the factors have the vectors' own.
         of_square, of_up = ti.cast(rate * rate, p.real), ti.cast(up, p.real)
@@ -208,14 +183,34 @@ class Bodies:
             self.force[n][u, k] = self.force[n][u, k] + load[n]
 
     @ti.func
+    def borne(self, u, tank):
+        """What a unit's parts that stand in a tank bear in all: force (y, z; N/m), moment (N), and two zeros."""
+        found = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(5))])
+        if ti.static(self.count > 0):
+            for k in range(self.count):
+                if self.tank[k] == tank:
+                    for n in ti.static(range(3)):
+                        found[n] += self.force[n][u, k]
+        return found
+
+    @ti.func
+    def end_in(self, part, b):
+        """Where the rows of a part end for a block b of water; where they begin if it is in another tank."""
+        end = self.ends[part + 1]
+        if ti.static(self.order.layers > 1):  # noqa: SIM102 (compiled only where there are several tanks)
+            if self.order.layer(b) != self.tank[part]:
+                end = self.ends[part]
+        return end
+
+    @ti.func
     def book(self, u, kick, dt):
         """Book what a unit's parts bore in a step of dt (s), and the work of their motion in the tank; begin anew."""
         w = self.units.world(u)
         for k in range(self.count):
             load = [self.force[n][u, k] for n in ti.static(range(3))]
             if ti.static(self.moving):
-                o_y, o_z, rate = self.pose[w, k, Y], self.pose[w, k, Z], self.pose[w, k, RATE]
-                v_y, v_z = self.pose[w, k, V_Y] + rate * o_z, self.pose[w, k, V_Z] - rate * o_y
+                o_y, o_z, rate = self.poses[w, k, Y], self.poses[w, k, Z], self.poses[w, k, RATE]
+                v_y, v_z = self.poses[w, k, V_Y] + rate * o_z, self.poses[w, k, V_Z] - rate * o_y
                 self.power[u, k] = 0.0 - dot(load, [v_y, v_z, rate])
                 self.work[u, k] = self.work[u, k] + self.power[u, k] * ti.cast(kick, self.exact)
             for n in ti.static(range(3)):
@@ -253,17 +248,3 @@ class Bodies:
     def _of_worlds(self, field: ti.Field) -> np.ndarray:
         """Sums over the units of each world (W, parts)."""
         return field.to_numpy().reshape(self.worlds, -1, self.count).sum(axis=1)
-
-    def places(self, time: float) -> dict[str, np.ndarray]:
-        """Where the parts are in the tank at a time (s): displacements (W, parts, 2) m of the origin, and turns."""
-        if self.count:
-            self.note_at(time)
-        pose = self.pose.to_numpy() if self.count else np.zeros((self.worlds, 0, 21))
-        turn = np.arctan2(pose[..., SINE], pose[..., COSINE])
-        return {"part": pose[..., [Y, Z]], "part_turn": turn}
-
-    @ti.kernel
-    def note_at(self, time: ti.f64):
-        """Note where the parts are at a time (s)."""
-        for w in range(self.worlds):
-            self.note(w, time, 0.0)

@@ -1,16 +1,18 @@
 """What the dummies of a wall would push water along its face, taken off their push."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
 from solvers.fluid.walls.behind import Behind
 from solvers.fluid.walls.layers import FAR, deep
-from solvers.fluid.walls.sight import COSINE, SINE, Y, Z
 from solvers.fluid.walls.solids import sides_of
 from solvers.machine.state import Axis, State, padded
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
+from solvers.tank.pieces import COSINE, SINE, Y, Z
 from solvers.tank.tank import Tank
 
 
@@ -30,10 +32,10 @@ class Lean:
     a corner, a wall of short edges, water beside air and full tanks, which have no `Closing`, are as they were.
     """
 
-    def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray, tank: Tank):
+    def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray, tanks: Sequence[Tank]):
         """`slots` are where the points of `behind` are among the lanes of the walls."""
         self.particles, self.constants = p, c = medium.particles, medium.constants
-        self.bodies = bodies = medium.lists.bodies
+        self.bodies, self.order = (bodies := medium.lists.bodies), medium.lists.order
         self.acts = p.dry > 0 and not (c.full or c.two)
         if self.acts:
             own, each = arrays.under("water.lean"), (Axis("block", p.worlds * p.stride), Axis("lane", p.lanes))
@@ -44,11 +46,16 @@ class Lean:
             ]
             self.lean = own.wide(each, *named("lean", p.axes), kept=False)
             if bodies.count:
-                off = self._rows(deep(behind.points, behind.along, tank.outline), bodies.solids.deep, slots)
+                off = np.zeros(len(behind.points))
+                for number, tank in enumerate(tanks):
+                    mine = behind.tanks == number
+                    off[mine] = deep(behind.points[mine], behind.along[mine], tank.outline)
+                off = self._rows(off, bodies.solids.deep, slots)
                 self.deep = own.holding("deep", padded(off, p.dry), "row lane")
                 goes_on = (bodies.solids.prolongs | np.eye(bodies.count, dtype=bool)).astype(np.int32)
                 self.goes_on = own.holding("goes_on", goes_on, "part other", ti.i32)
-                sides = [*bodies.solids.sides, sides_of(tank.outline)]
+                sides = [*bodies.solids.sides, *(sides_of(tank.outline) for tank in tanks)]
+                self.tanks = [*bodies.tanks, *range(len(tanks))]  # in which each of these is
                 self.ends = np.cumsum([0, *(len(of_one) for of_one in sides)]).tolist()
                 self.sides = own.holding("sides", np.concatenate(sides), "side number", own.exact)
                 self.near = own.holding("near", np.array([FAR * bodies.reach]), "length", p.real)
@@ -84,18 +91,27 @@ class Lean:
         to_face = [0.0 - deep * along[1], deep * along[0]]
         for k in ti.static(range(self.bodies.count)):
             owner = self.bodies.owner[ti.max(row, 0)]
-            if row < 0 or self.goes_on[owner, k] == 0:
-                pose = [self.bodies.pose[w, k, n] for n in ti.static((Y, Z, COSINE, SINE))]
+            if (row < 0 or self.goes_on[owner, k] == 0) and self.is_in(k, b):
+                pose = [self.bodies.poses[w, k, n] for n in ti.static((Y, Z, COSINE, SINE))]
                 clear *= self.clear_of(b, k, pose, to_face)
-        if row >= 0:
-            clear *= self.clear_of(b, self.bodies.count, [0.0, 0.0, 1.0, 0.0], to_face)
+        for k in ti.static(range(self.bodies.count, len(self.tanks))):
+            if row >= 0 and self.is_in(k, b):
+                clear *= self.clear_of(b, k, [0.0, 0.0, 1.0, 0.0], to_face)
         return clear
+
+    @ti.func
+    def is_in(self, k: ti.template(), b):
+        """Whether a part or tank k is in the tank of a block, or that tank itself."""
+        found = True
+        if ti.static(self.order.layers > 1):
+            found = self.tanks[k] == self.order.layer(b)
+        return found
 
     @ti.func
     def clear_of(self, b, k: ti.template(), pose: ti.template(), to_face: ti.template()):
         """1 for the dummies of a block that are away from the part k at a pose (y, z, cosine, sine), else 0.
 
-        The tank follows the parts. Distances are from the face, and from there on to the dummy: so is the one from the
+        The tanks follow the parts. Distances are from the face, and from there on to the dummy: so is the one from the
         corner between two walls.
         """
         p, clear = self.particles, self.particles.ones()

@@ -5,9 +5,9 @@ import taichi as ti
 from solvers.fluid.lists import Medium
 from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.walls.extrapolation import Extrapolation
-from solvers.fluid.walls.sight import RATE
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
+from solvers.tank.pieces import RATE
 
 
 @ti.data_oriented
@@ -122,7 +122,7 @@ class WallPush:
             rate = ti.cast(self.poses.walls[5][w], self.particles.real)
         if ti.static(self.bodies.moving):  # noqa: SIM102 (compiled only where parts move)
             if piece > 0:
-                rate += ti.cast(self.bodies.pose[w, piece - 1, RATE], self.particles.real)
+                rate += ti.cast(self.bodies.poses[w, piece - 1, RATE], self.particles.real)
         return rate
 
     @ti.func

@@ -6,6 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Water
+from solvers.fluid.order import Order
 from solvers.fluid.state import UNUSED, Particles
 from solvers.fluid.walls.layers import FAR
 from solvers.fluid.walls.solids import TOUCHES, is_solid, line_of, prolonging
@@ -13,9 +14,8 @@ from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
 from solvers.tank.parts import Part
-from solvers.tank.tank import Tank
+from solvers.tank.pieces import COSINE, NUMBERS, SINE, Y, Z
 
-Y, Z, COSINE, SINE, V_Y, V_Z, RATE = range(7)  # a pose in the tank: its origin (m), its turn, its velocities
 # A plate: a point (m), its direction, its ends (m) from there, how far (m) its ends reach on into walls.
 LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH, IN_LOW, IN_HIGH = range(8)
 OF_LINE = 8  # numbers
@@ -42,10 +42,10 @@ class Sight:
     of plates that meet at an angle, or do not move alike, are free, and so let water pass.
     """
 
-    def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int):
-        self.exact, self.worlds = arrays.exact, worlds
+    def __init__(self, arrays: State, parts: Sequence[Part], water: Water, scene, wet: Sequence[bool]):
+        self.exact, self.apart = arrays.exact, len(scene.tanks) > 1
         alike = prolonging(parts, water.spacing)
-        firsts = [k for k, part in enumerate(parts) if not is_solid(part) and not alike[k, :k].any()]
+        firsts = [k for k, part in enumerate(parts) if wet[k] and not is_solid(part) and not alike[k, :k].any()]
         self.plates, self.count = [np.flatnonzero(alike[k]) for k in firsts], len(firsts)
         if self.plates:
             own = arrays.under("sight")
@@ -54,14 +54,18 @@ class Sight:
             self.lengths = own.holding("lengths", lengths, "length", own.exact)
             self.drawn = own.holding("drawn", lines, "plate number", own.exact)
             self.parts = own.holding("parts", np.array(firsts), "plate", ti.i32)
-            edges = np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)])
-            self.edges, self.outline = len(edges), own.holding("outline", edges, "edge number", own.exact)
-            each = Axis("world", worlds), Axis("plate", len(self.plates)), Axis("number", 2 * OF_LINE)
+            edges = [np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)]) for tank in scene.tanks]
+            self.outline = own.holding("outline", np.concatenate(edges), "edge number", own.exact)
+            ends = np.cumsum([0, *map(len, edges)])
+            self.tanks = [parts[k].tank for k in firsts]  # in which each plate stands
+            rows = np.array([[ends[tank], ends[tank + 1], tank] for tank in self.tanks])
+            self.edges = own.holding("edges", rows, "plate number", ti.i32)  # its tank's, from and to, and the tank
+            each = Axis("world", scene.worlds), Axis("plate", len(self.plates)), Axis("number", 2 * OF_LINE)
             (self.line,) = own.reals(each, "line", kept=False)
 
-    def join(self, arrays: State, particles: Particles, owner: np.ndarray, first: ti.Field) -> None:
-        """Take the `particles`, of whose dry blocks those from `first` (1,) on belong to the parts `owner`."""
-        self.particles, self.first = particles, first
+    def join(self, arrays: State, particles: Particles, owner: np.ndarray, first: ti.Field, order: Order) -> None:
+        """Take the `particles` and their `order`; of the dry blocks those from `first` (1,) on are of parts `owner`."""
+        self.particles, self.first, self.order = particles, first, order
         if self.plates:
             self.plate = arrays.under("sight").holding("plate", self.number_of(owner), "row", ti.i32)
 
@@ -82,7 +86,7 @@ class Sight:
     @ti.func
     def note_line(self, w, q, poses: ti.template(), part):
         """Note where a plate is, and whether its ends touch the tank's wall."""
-        first, at, k = OF_LINE * part, 7 * part, self.parts[q]
+        first, at, k = OF_LINE * part, NUMBERS * part, self.parts[q]
         cos, sin = poses[w, k, at + COSINE], poses[w, k, at + SINE]
         y = [poses[w, k, at + Y] + cos * self.drawn[q, n] - sin * self.drawn[q, n + 1] for n in ti.static((0, 2))]
         z = [poses[w, k, at + Z] + sin * self.drawn[q, n] + cos * self.drawn[q, n + 1] for n in ti.static((0, 2))]
@@ -90,17 +94,17 @@ class Sight:
         values = [y[0], z[0], (y[1] - y[0]) / length, (z[1] - z[0]) / length]
         for n in ti.static(range(4)):
             self.line[w, q, first + n] = ti.cast(values[n], self.particles.real)
-        low = ti.select(self.touching(y[0], z[0]), self.lengths[REACH], 0.0)
-        high = ti.select(self.touching(y[1], z[1]), self.lengths[REACH], 0.0)
+        low = ti.select(self.touching(q, y[0], z[0]), self.lengths[REACH], 0.0)
+        high = ti.select(self.touching(q, y[1], z[1]), self.lengths[REACH], 0.0)
         ends = [0.0 - low, length + high, low, high]
         for n in ti.static(range(4)):
             self.line[w, q, first + LOW + n] = ti.cast(ends[n], self.particles.real)
 
     @ti.func
-    def touching(self, y, z):
-        """Whether a point is at the tank's outline, or outside it."""
+    def touching(self, q, y, z):
+        """Whether a point is at the outline of the tank of plate q, or outside it."""
         near, inside = False, False
-        for k in range(self.edges):
+        for k in range(self.edges[q, 0], self.edges[q, 1]):
             a_y, a_z, b_z = self.outline[k, 0], self.outline[k, 1], self.outline[k, 3]
             along, up, off_y, off_z = self.outline[k, 2] - a_y, b_z - a_z, y - a_y, z - a_z
             share = ti.max(0.0, ti.min(1.0, (off_y * along + off_z * up) / (along * along + up * up)))
@@ -127,7 +131,7 @@ class Sight:
             t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
             y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
             across = t_y * z - t_z * y
-            if across * across < 4.0 * reach * reach:
+            if across * across < 4.0 * reach * reach and self.is_in(q, b):
                 its = ti.cast(0.0, p.real)  # 1 where one of the two is a dummy of this plate
                 if own >= 0:
                     its = ti.select(self.plate[own] == q, 1.0, its)
@@ -143,6 +147,14 @@ class Sight:
         return share
 
     @ti.func
+    def is_in(self, q, b):
+        """Whether a plate stands in the tank of a block."""
+        found = True
+        if ti.static(self.apart):
+            found = self.edges[q, 2] == self.order.layer(b)
+        return found
+
+    @ti.func
     def off_ends(self, b, part: ti.template()):
         """1 for the particles of a block that are farther than FAR from all free ends of plates, else 0."""
         p = self.particles
@@ -151,7 +163,7 @@ class Sight:
         for q in range(self.count):
             first = ti.static(OF_LINE * part)
             for n in range(2):
-                if self.line[w, q, first + IN_LOW + n] == 0.0:
+                if self.line[w, q, first + IN_LOW + n] == 0.0 and self.is_in(q, b):
                     way = self.line[w, q, first + LOW + n]
                     y = self.line[w, q, first + LINE_Y] + way * self.line[w, q, first + ALONG_Y]
                     z = self.line[w, q, first + LINE_Z] + way * self.line[w, q, first + ALONG_Z]

@@ -33,7 +33,7 @@ def sheet(points: Sequence, spacing: float, rows: int) -> tuple[np.ndarray, np.n
 
 def is_solid(part: Part) -> bool:
     """Whether a part is a solid polygon; else it is a plate without thickness."""
-    return getattr(part, "closed", False)
+    return part.closed
 
 
 def prolonging(parts: Sequence[Part], spacing: float) -> np.ndarray:
@@ -41,7 +41,7 @@ def prolonging(parts: Sequence[Part], spacing: float) -> np.ndarray:
 
     Also by way of others between them, and each plate itself; no solid body.
     """
-    plates = [not is_solid(part) for part in parts]
+    plates = [not is_solid(part) and len(part.points) == 2 for part in parts]
     found = np.diag(np.array(plates, dtype=bool))
     for k, first in enumerate(parts):
         for m, second in enumerate(parts[:k]):
@@ -90,7 +90,7 @@ def counter_clockwise(points: Sequence) -> np.ndarray:
 
 
 class Solids:
-    """The dummies of all parts in blocks of `lanes`, each block of one part.
+    """The dummies of the parts that are `wet`, in blocks of `lanes`, each block of one part.
 
     `places` (blocks, lanes, 2) m as drawn, `volumes` (blocks, lanes) m², `firm` (blocks, lanes) m, the distances within
     which they push water back, `along` (blocks, lanes, 2) unit vectors along the faces before them, `straight` those
@@ -100,10 +100,11 @@ class Solids:
     one. `sides` are those of each part, see `sides_of`, `prolongs` (parts, parts) as of `prolonging`.
     """
 
-    def __init__(self, parts: Sequence[Part], water: Water, lanes: int):
+    def __init__(self, parts: Sequence[Part], water: Water, lanes: int, wet: Sequence[bool]):
         rows = int(np.ceil(water.reach / water.spacing - 1e-9))
         self.prolongs = prolonging(parts, water.spacing)
-        found = [self._part(k, parts, water, rows, lanes) for k in range(len(parts))]
+        none = (*(np.zeros((0, lanes, *more)) for more in ((2,), (), (), (2,), (2,), (2,), ())),)
+        found = [self._part(k, parts, water, rows, lanes) if of_water else none for k, of_water in enumerate(wet)]
         places = [place for place, *_ in found]
         self.sides = [sides_of(part.points, is_solid(part)) for part in parts]
         self.ends = np.cumsum([0, *(len(place) for place in places)])

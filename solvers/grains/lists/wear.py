@@ -89,7 +89,7 @@ class Wear:
                 else:
                     nearing = self.skin.width[w] - 2.0 * (self.bound[u] - moved)
                 if ti.static(self.walls.moving):
-                    gone = self.walls.gone(w, self.built_at[u], t)
+                    gone = self.walls.moved.gone(w, self.built_at[u], t)
                 old = not self.look_again(u, t, moved, nearing, gone)
         return old
 

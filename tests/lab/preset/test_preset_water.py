@@ -263,9 +263,9 @@ FAULTS = {
         "parts.wall.points: this body is 20 mm thin, under 4 h = 32 mm; take smaller particles, or draw it as a "
         "plate of two points.",
     ),
-    "a body without water": (
-        {"water": False, "parts__wall": {"points": THIN, "closed": True}},
-        "parts.wall.closed: goes with water, and there is none; leave this out.",
+    "a part in a tank that is not": (
+        {"parts__wall": {"points": THIN, "closed": True, "tank": "aft"}},
+        "parts.wall.tank: is 'aft', and there are no further tanks here; leave it out for [tank].",
     ),
     "repeats": (
         {"run__repeats": 3},

@@ -64,7 +64,7 @@ def test_an_empty_tank_records_how_it_moves_and_that_nothing_loads_it(moved):
         assert np.ptp(recording.series["pose"][..., 2]) > 0.05
         assert not recording.series["wall_force"].any()
         assert set(recording.series) == {"time", "pose", "pose_rate", "wall_force"}
-        assert set(recording.frames) == {"time", "pose", "part"}
+        assert set(recording.frames) == {"time", "pose", "part", "part_turn"}
         assert recording.labelled().sizes["world"] == 2
         assert measure_all(recording) == {}
 

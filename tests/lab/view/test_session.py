@@ -81,7 +81,7 @@ def seen(place: np.ndarray, time: float) -> LiveFrame:
     }
     rows = {"pose": np.zeros((1, 3)), "centre_of_mass": np.full((1, 2), time)}
     rows |= {name: np.zeros(1) for name in ("kinetic", "contacts")}
-    return LiveFrame(time, {**rows, "part": np.zeros((1, 0, 2))}, grains, PRESSING)
+    return LiveFrame(time, {**rows, "part": np.zeros((1, 0, 2)), "part_turn": np.zeros((1, 0))}, grains, PRESSING)
 
 
 def asked(pipe) -> list:

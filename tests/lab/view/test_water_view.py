@@ -67,7 +67,7 @@ def seen(drops, time, tilt, depth=0.1):
     drawn = {"water_place": place, "water_velocity": moving, "water_pressure": 9810.0 * (depth - place[..., 1])}
     rows = {"pose": np.array([[0.0, 0.0, tilt]]), "water_centre": np.array([[0.01 * time, 0.05]])}
     rows |= {"gauge_peak": np.array([[500.0 + time]]), "level_depth": np.array([[depth - 0.15 * np.tan(tilt)]])}
-    return LiveFrame(time, {**rows, "part": np.zeros((1, 0, 2))}, drawn, UNTOUCHED)
+    return LiveFrame(time, {**rows, "part": np.zeros((1, 0, 2)), "part_turn": np.zeros((1, 0))}, drawn, UNTOUCHED)
 
 
 def surface(session, picture):

@@ -79,7 +79,7 @@ def test_water_tank_and_bodies_share_momentum_and_energy(run):
     assert np.abs(end["part_force"]).min() > 0.0 and work > 4.0  # else nothing was tried
     np.testing.assert_allclose(end["part_work"].sum(axis=1), work)
     np.testing.assert_allclose(gain + taken, work, rtol=0.02)
-    turn = run.snapshot()["part_turn"][0]
+    turn = run.placed()["part_turn"][0]
     angles = [0.1 * np.sin(2.0 * np.pi * frequency * run.time) for frequency in (1.5, 1.0)]
     np.testing.assert_allclose(turn, [*angles, 0.0], atol=1e-12)
 

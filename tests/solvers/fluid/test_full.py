@@ -52,7 +52,7 @@ def test_water_closes_up_behind_a_square_and_accounts_for_its_energy(run):
     while run.time < 2.0:
         run.advance(100)
     rows, shot = run.observe(), run.snapshot()
-    moved = corners(-1.2 + shot["part"][0, 0, 0])
+    moved = corners(-1.2 + run.placed()["part"][0, 0, 0])
     near = np.stack(np.meshgrid(*(np.arange(-2.0, 2.4, 0.02),) * 2), axis=-1).reshape(-1, 2)
     edge = 0.5 * SPACING
     inside = (np.abs(near[:, 0]) < 0.5 * WIDTH - edge) & (near[:, 1] > edge) & (near[:, 1] < HEIGHT - edge)

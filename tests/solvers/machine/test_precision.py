@@ -94,7 +94,7 @@ def told() -> dict[str, Told]:
         for _ in range(LOOKS):
             run.advance(round(TIME / LOOKS / run.dt))
             run.observe()
-            looks.append((run.part_places()[0, 0, 1], *(run.snapshot()[name] for name in ("position", "velocity"))))
+            looks.append((run.placed()["part"][0, 0, 1], *(run.snapshot()[name] for name in ("position", "velocity"))))
         run.close()
         columns = (np.array(column, dtype=float) for column in zip(*looks, strict=True))
         found[precision] = Told(run.dt, *columns)

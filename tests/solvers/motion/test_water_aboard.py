@@ -213,7 +213,7 @@ def test_grains_and_water_share_no_tank():
     from solvers.fluid.checks import refuse_scene
 
     with pytest.raises(Unavailable, match="give them tanks of their own"):
-        refuse_scene((10,), 0, True)
+        refuse_scene((10,), True)
 
 
 def test_a_load_that_is_extrapolated_drives_a_light_ship():

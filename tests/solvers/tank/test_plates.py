@@ -106,7 +106,7 @@ def flight(request) -> Flight:
     while run.time < DURATION:
         run.advance(12)
         state, rows = run.snapshot(), run.observe()
-        roofs = run.part_places()[0] + [STILL, MOVING]
+        roofs = run.placed()["part"][0] + [STILL, MOVING]
         state = {name: state[name][:, flies] for name in ("position", "velocity", "spin")}
         near = np.stack([distance(state["position"][:, k], roof) for k, roof in enumerate(roofs)], axis=1)
         looks.append([*state.values(), near, rows["contacts"], run.time])
@@ -180,7 +180,7 @@ def machine():
     while run.time < 0.35:
         run.advance(round(0.01 / run.dt))
         rows = run.observe()
-        looks.append((run.time, run.snapshot()["position"][0], run.part_places()[0], rows))
+        looks.append((run.time, run.snapshot()["position"][0], run.placed()["part"][0], rows))
     stiffness = 4.0 / 3.0 * scene.grains.interfaces[1].young_modulus * np.sqrt(RADIUS)
     mass = run.grains.mass[0, 0]
     run.close()

@@ -7,6 +7,7 @@ from matplotlib.path import Path
 
 from solvers.machine import runtime
 from solvers.machine.state import State
+from solvers.tank.pieces import Pieces
 from solvers.tank.tank import Tank
 from solvers.tank.walls import Walls
 from tests.oracles.scenes import box, material, simulation
@@ -46,7 +47,7 @@ def ask(outline: np.ndarray, points: np.ndarray, reach: float):
     """Signed distances (N, features), normals (N, features, 2), near (N, features) and holds (N,) of an outline."""
     runtime.initialise(1)
     arrays = State()
-    walls = Walls(arrays, [Tank(outline, 1.0)])
+    walls = Walls(arrays, [Tank(outline, 1.0)], Pieces(arrays, (), (), 1))
     arrays.finish()
     gaps = np.zeros((len(points), walls.features, 3))
     near, holds = np.zeros(gaps.shape[:2], dtype=np.int32), np.zeros(len(points), dtype=np.int32)

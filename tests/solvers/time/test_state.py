@@ -79,7 +79,7 @@ def lead_up(run: Simulation, case: str) -> None:
 def end(run: Simulation) -> dict[str, np.ndarray]:
     """The final state of a simulation."""
     run.advance(LATER)
-    return run.observe() | run.snapshot() | {"part": run.part_places(), "time": np.array(run.time)}
+    return run.observe() | run.snapshot() | run.placed() | {"time": np.array(run.time)}
 
 
 def go_on(folder: Path, case: str) -> None:

@@ -161,7 +161,7 @@ def expected_speed(preset: Wet) -> float:
     if preset.water.shape is not None:
         height = max(height, bounds(preset)[1] - min(z for _, z in preset.tank.corners))
     wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.shape is None else FRONT)
-    return max([wave, flow_speed(preset), tank_speed(preset), *(part.wet.fastest() for part in preset.parts.values())])
+    return max([wave, flow_speed(preset), tank_speed(preset), *(part.fastest() for part in preset.parts.values())])
 
 
 def centre_of_flow(preset: Wet) -> tuple[float, float]:

@@ -7,8 +7,9 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.outline import simple_polygon
 from lab.preset.sections.history import check_end
-from lab.preset.sections.parts import PartGroup
+from lab.preset.sections.parts import PartGroup, parts_of
 from lab.preset.sections.water import liquid
+from lab.preset.sections.water.tanks import outline_at, pools
 from lab.preset.units import show
 from solvers.fluid.walls.solids import counter_clockwise
 from solvers.tank.tank import Tank as Outline
@@ -21,16 +22,19 @@ NEAR = 1e-3  # of the tank's larger side: how far a part may stand in a wall
 
 def check_solids(preset: liquid.Wet) -> None:
     """Raise LabError, one sentence, for the first part that water cannot have in it."""
-    for name, part in preset.parts.items():
+    wet = {pool.number for pool in pools(preset)}
+    for (name, part), solved in zip(preset.parts.items(), parts_of(preset), strict=True):
         key = f"parts.{name}"
         if part.history:
             _check_end(preset, part, key)
+        if solved.tank not in wet:
+            continue
         if part.closed:
             _check_body(part, 2.0 * preset.liquid.reach, key)
         elif len(part.points) != 2:
             remedy = "give two points, or set closed = true for a solid body"
             raise LabError(f"{key}.points: a plate in water is straight (got {len(part.points)} points); {remedy}.")
-        _check_place(preset, part, key)
+        _check_place(outline_at(preset, solved.tank), part, key)
 
 
 def _check_end(preset: liquid.Wet, part: PartGroup, key: str) -> None:
@@ -69,10 +73,9 @@ def thickness(corners: np.ndarray) -> float:
     return float(found)
 
 
-def _check_place(preset: liquid.Wet, part: PartGroup, key: str) -> None:
-    """Raise LabError for a part that stands in a wall, at the start or on its way; above the tank it may be."""
-    tank = np.array(preset.tank.corners)
-    outline, top, left = Outline(tank, 1.0), tank[:, 1].max(), NEAR * max(preset.tank.extent)
+def _check_place(tank: np.ndarray, part: PartGroup, key: str) -> None:
+    """Raise LabError for a part that stands in a wall of its tank, at the start or on its way; above it, it may be."""
+    outline, top, left = Outline(tank, 1.0), tank[:, 1].max(), NEAR * float(np.ptp(tank, axis=0).max())
     points = np.array(part.points)
     sides = points[:-1] if not part.closed else points
     share = np.linspace(0.0, 1.0, ALONG)[:, None]

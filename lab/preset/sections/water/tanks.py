@@ -61,6 +61,11 @@ def outline_of(preset: Tanked, tank: FurtherTank) -> np.ndarray:
     return np.array(tank.corners) + np.subtract(tank.place, preset.ship.hold)
 
 
+def outline_at(preset: Tanked, number: int) -> np.ndarray:
+    """The outline (m, 2) m of the tank of a number in the axes of the first one."""
+    return outline_of(preset, [*preset.tanks.values()][number - 1]) if number else np.array(preset.tank.corners)
+
+
 def further_tanks(preset: Tanked, thickness: float) -> tuple[solved.Tank, ...]:
     """The further tanks as the solver takes them, of a `thickness` (m)."""
     return tuple(

@@ -196,33 +196,35 @@ class ShapedContacts(Contacts):
     ):
         """Apply the force of contact p to its grain and to the wall."""
         i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
-        velocity = self.walls.velocity(feature, shift)
+        turning = g.spin_now[w, i] - self.walls.rate(feature, shift)
         if ti.static(hasattr(contacts, SURE)):
+            velocity = self.walls.velocity(feature, shift, g.y[w, i], g.z[w, i])
             speed = ti.abs(g.now[0][w, i] - velocity[0]) + ti.abs(g.now[1][w, i] - velocity[1])
-            passed = dt * (speed + g.reach[w, i] * ti.abs(g.spin_now[w, i]))
+            passed = dt * (speed + g.reach[w, i] * ti.abs(turning))
             enter(contacts.sure, u, p, 0, entry(contacts.sure, u, p, 0) - passed)
         c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
         if self.unsettled(contacts, u, p, c):
             c[OVERLAP] = -g.reach[w, i]
         lever = lever_of(c, 0.5)
-        rate, slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
+        rate, slip, pressing = self.wall_pressed(g, contacts, w, i, feature, shift, u, p, c, lever, dt)
         n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
         force, torque = pressing * n, pressing * lever.cross(n)
         if ti.static(self.rule.bent):
             d = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, True)
             if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
                 arm, m = lever_of(d, 0.5), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
-                less = self.wall_pressed(g, contacts, w, i, u, p, d, arm, velocity, dt)[2]
+                less = self.wall_pressed(g, contacts, w, i, feature, shift, u, p, d, arm, dt)[2]
                 force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
-        ft, roll = self.rubbed(WALL, contacts, u, p, c, rate, pressing, slip, g.spin_now[w, i], dt)
+        ft, roll = self.rubbed(WALL, contacts, u, p, c, rate, pressing, slip, turning, dt)
         force += ft * ti.Vector([-n[1], n[0]])
         self.push_off(g, w, i, u, feature, [force[0], force[1]], torque + ft * lever.dot(n) + roll, load)
 
     @ti.func
     def wall_pressed(
-        self, g: ti.template(), contacts: ti.template(), w, i, u, p, c, lever, velocity: ti.template(), dt
+        self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, c, lever, dt
     ):
-        """Closing speed and slip (m/s) of a grain on a wall with a velocity (m/s), and the normal force (N)."""
+        """Closing speed and slip (m/s) of a grain on a wall, and the normal force (N)."""
+        velocity = self.walls.velocity(feature, shift, g.y[w, i] + lever[0], g.z[w, i] + lever[1])
         uy = g.now[0][w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
         uz = g.now[1][w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
         return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)

@@ -369,7 +369,7 @@ class Continuous:
         c = self.against(outline, feature, self.walls.target(g, w, i, feature, shift), way, place, moves)
         normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
         point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
-        counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
+        counts = self.walls.counts_on_corner(feature, shift, normal[0], normal[1])
         if feature < self.walls.walls.segments:
             counts = self.walls.counts_on_segment(feature, shift, g.y[w, i] + point[0], g.z[w, i] + point[1])
         overlap = ti.select(counts, c[OVERLAP], -g.reach[w, i])

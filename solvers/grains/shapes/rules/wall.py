@@ -33,7 +33,8 @@ class SeenWalls:
         if ti.static(self.walls.open or self.walls.parts > 0):  # noqa: SIM102 (compiled only where there are plates)
             if self.walls.table[feature, TWO_SIDED] > 0.0 and distance < 0.0:
                 side = -1.0
-        return ti.Vector([-tz * side, ty * side, distance * side])
+        normal = self.walls.turned(feature, shift, -tz * side, ty * side)
+        return ti.Vector([normal[0], normal[1], distance * side])
 
     @ti.func
     def target(self, g: ti.template(), w, i, feature, shift: ti.template()):
@@ -44,7 +45,8 @@ class SeenWalls:
             normal = turned_back(g.turn(w, i), ti.Vector([ti.cast(face[0], g.real), ti.cast(face[1], g.real)]))
             seen = ti.Vector([normal[0], normal[1], ti.cast(face[2], g.real)])
         else:
-            point = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+            drawn = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+            point = self.walls.turned(feature, shift, drawn[0], drawn[1])
             corner = turned_back(g.turn(w, i), ti.Vector([-ti.cast(point[0], g.real), -ti.cast(point[1], g.real)]))
             seen = ti.Vector([corner[0], corner[1], ti.cast(0.0, g.real)])
         return seen
@@ -57,16 +59,21 @@ class SeenWalls:
         return self.ends[feature, 0] <= along <= self.ends[feature, 1]
 
     @ti.func
-    def counts_on_corner(self, feature, ny, nz):
+    def counts_on_corner(self, feature, shift: ti.template(), ny, nz):
         """Whether a normal (y, z) lies between those of a corner's two segments."""
-        before = ny * self.walls.table[feature, ALONG_Y] + nz * self.walls.table[feature, ALONG_Z]
-        after = ny * self.walls.table[feature, AFTER_Y] + nz * self.walls.table[feature, AFTER_Z]
+        along = self.walls.turned(
+            feature, shift, self.walls.table[feature, ALONG_Y], self.walls.table[feature, ALONG_Z]
+        )
+        past = self.walls.turned(feature, shift, self.walls.table[feature, AFTER_Y], self.walls.table[feature, AFTER_Z])
+        before = ny * along[0] + nz * along[1]
+        after = ny * past[0] + nz * past[1]
         return before > 0.0 and after < 0.0
 
     @ti.func
     def corner_contact(self, g: ti.template(), tables: ti.template(), w, i, feature, shift: ti.template()):
         """Contact of grain i with a corner, by polar radius: overlap (m), normal, point from the centre (m), 1."""
-        away = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+        drawn = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+        away = self.walls.turned(feature, shift, drawn[0], drawn[1])
         corner = ti.Vector([-ti.cast(away[0], g.real), -ti.cast(away[1], g.real)])
         own = turned_back(g.turn(w, i), corner)
         distance = own.norm()
@@ -75,7 +82,7 @@ class SeenWalls:
         outward = ti.Vector([radius[0] * own[0] + radius[1] * own[1], radius[0] * own[1] - radius[1] * own[0]])
         normal = 0.0 - turned(g.turn(w, i), outward * tilt / (radius[0] * distance))
         overlap = (radius[0] - distance) * tilt
-        if not self.counts_on_corner(feature, normal[0], normal[1]):
+        if not self.counts_on_corner(feature, shift, normal[0], normal[1]):
             overlap = -FAR
         point = corner - overlap * normal
         return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], 1.0])
