@@ -76,7 +76,7 @@ def test_closed_air_follows_water_and_walls(pool):
     places = (np.indices((round(WIDTH / spacing), round(HEIGHT / spacing))).reshape(2, -1).T + 0.5) * spacing
     places[:, 0] -= 0.5 * WIDTH
     gas = (np.abs(places[:, 1] - 0.5 * HEIGHT) > 0.04).astype(float)
-    made = made.holding(replace(made.fluid, particles=filled(places, gas, spacing**2)))
+    made.matters = made.holding(replace(made.fluid, particles=filled(places, gas, spacing**2))).matters
     high, at_rest = made.fluid.particles["position"][0, :, 1], 1.2 * sound**2 / 1.4
     made.fluid.particles["velocity"][0, :, 1] = 0.18 * np.minimum(1.0, np.minimum(high, HEIGHT - high) / long)
     made.gravity = 0.0
@@ -96,7 +96,9 @@ def test_drops_fall_together_with_the_pool_below(pool):
     drops, spacing = made.fluid.particles[0], made.fluid.water.spacing
     high = (np.abs(drops["position"][:, 0]) < 2.0 * spacing) & (np.abs(drops["position"][:, 1] - 0.25) < 0.5 * spacing)
     drops["gas"][high], drops["excess"][high] = 0.0, 0.0
-    made = made.holding(replace(made.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None]))
+    made.matters = made.holding(
+        replace(made.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None])
+    ).matters
     run = again(pool, made)
     run.advance(round(0.5 / run.dt))
     place = run.snapshot()["water_place"][0]
@@ -139,7 +141,9 @@ def bubble(made: Scene, near: np.ndarray, excess: float) -> None:
     """Let the particle nearest to a place (m) be one of air, of this excess of density."""
     at, particles = np.linalg.norm(made.fluid.particles["position"][0] - near, axis=1).argmin(), made.fluid.particles
     particles["gas"][0, at], particles["excess"][0, at] = True, excess
-    made = made.holding(replace(made.fluid, particles=particles[:, np.argsort(particles["gas"][0], kind="stable")]))
+    made.matters = made.holding(
+        replace(made.fluid, particles=particles[:, np.argsort(particles["gas"][0], kind="stable")])
+    ).matters
 
 
 def test_a_bubble_of_one_particle_does_not_stay_stretched(pool):
@@ -181,7 +185,7 @@ def stirred(step: float | None = None, **of_air) -> Scene:
     lone = np.flatnonzero(off_walls & (drops["gas"][0] > 0.5))[::7]
     drops["gas"][0, lone], drops["excess"][0, lone] = 0.0, 0.0
     drops = drops[:, np.argsort(drops["gas"][0], kind="stable")]
-    made = made.holding(replace(made.fluid, particles=drops))
+    made.matters = made.holding(replace(made.fluid, particles=drops)).matters
     drops["position"] += 0.1 * made.fluid.water.spacing * random.uniform(-1.0, 1.0, drops["position"].shape)
     drops["velocity"] = 0.2 * random.uniform(-1.0, 1.0, drops["position"].shape)
     return made

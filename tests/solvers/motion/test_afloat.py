@@ -134,7 +134,7 @@ class Run:
             step=2.5e-5,
         )
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("solvers.grains.matter.ChosenLaws", CountedLaws)
+            patch.setattr("solvers.grains.making.ChosenLaws", CountedLaws)
             self.simulation = Simulation(scene, np.tile(np.add(SITES, [0.0, 0.1 * RADIUS]), (len(vessels), 1, 1)), 1)
         self.simulation.settle(1e-7, 0.8)
         self.height = self.simulation.snapshot()["position"][TINY, :, 1].mean()
@@ -421,7 +421,7 @@ def test_a_state_continues_bit_for_bit(run):
 @pytest.mark.slow
 def test_growing_contact_arrays_changes_nothing(monkeypatch):
     """The arrays are enlarged during a run without any effect on the ship."""
-    monkeypatch.setattr("solvers.grains.matter.ChosenLaws", CountedLaws)  # as `Run` has them, for those that are larger
+    monkeypatch.setattr("solvers.grains.making.ChosenLaws", CountedLaws)  # as `Run` has them, for those that are larger
     found = []
     for grow in (False, True):
         run = Run().simulation

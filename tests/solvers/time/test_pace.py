@@ -12,6 +12,7 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import regular
 from solvers.simulation import Simulation
+from solvers.tank.given import Given
 from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
 from tests.oracles.weight import Weight
@@ -21,19 +22,25 @@ MASS, SPRING, MIDDLE, START = 0.2, 800.0, (0.01, 0.05), (0.012, 0.047)
 AXIS = (0.0, 0.11)
 
 
+class Hung(Given):
+    """What a scene says of the weight."""
+
+    worlds = 1
+
+
 def two_matters(monkeypatch, every: int, push=(0.0, 0.0), spring=SPRING, schedule="per-world", vessels=()):
     """A simulation of two grains on the floor and a weight that acts `every` few steps."""
 
     def make_weight(scene, setting):
         return Weight(scene, setting, MASS, MIDDLE, spring, push, every)
 
-    monkeypatch.setattr("solvers.matters.MATTERS", (*MATTERS, make_weight))
+    monkeypatch.setitem(MATTERS, Hung, (lambda scene, closing: [], (make_weight,)))
     grain = material(young=5e7)
     position = np.array([[[-0.02, RADIUS], [0.02, RADIUS]]])
     radius = np.full((1, 2), RADIUS)
     few = {"tangential": "none", "step": STEP}  # laws, so that kernels compile fast
     scene = scene_of(radius, box(0.1, 0.1), grain, grain, schedule=schedule, vessels=vessels, **few)
-    run = Simulation(scene, position, 2, arch="cpu", units=2 if schedule == "per-band" else None)
+    run = Simulation(scene.holding(Hung()), position, 2, arch="cpu", units=2 if schedule == "per-band" else None)
     run.matters["weight"].put(*START)
     return run
 
