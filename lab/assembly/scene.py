@@ -8,9 +8,10 @@ import numpy as np
 
 from lab.assembly.collisions import known_collisions
 from lab.assembly.grains import check_softness, grain_count, grains_of
+from lab.assembly.matters import others_of
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
-from lab.assembly.water import fluid_of, most_drops, particles, water_aboard
+from lab.assembly.water import most_drops, particles, water_aboard
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.parts import parts_of
@@ -43,7 +44,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     grains, position = grains_of(preset)
     scene = Scene(
         outline=np.array(preset.tank.corners),
-        matters=tuple(matter for matter in (grains, fluid_of(preset)) if matter),
+        matters=((grains,) if grains else ()) + others_of(preset),
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * worlds,
         soft_start=preset.motion.soft_start,

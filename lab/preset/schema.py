@@ -47,7 +47,8 @@ from solvers.tank.tank import BARE_THICKNESS
 from solvers.tank.tank import Tank as SlabTank
 
 FORMAT = 3
-MATTERS = ("grains", "water", "air")  # the keys of the matters that a tank may hold; air is water's second phase
+# The keys of the matters that a tank may hold; air is water's second phase
+MATTERS = ("grains", "water", "air")
 
 
 @dataclass(frozen=True)

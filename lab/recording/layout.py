@@ -44,7 +44,8 @@ CHECKS = "checks"  # the group of the checksums
 FLUSHED_ROWS = "rows"  # its attribute with the number of rows of the table at the last flush
 COLUMNS = "columns"  # its attribute with the names of the data sets, in the order of the checksums in a row
 
-OF_MATTERS = {"grains": grains, "water": water, "air": air}  # what each matter is recorded by
+# What each matter is recorded by
+OF_MATTERS = {"grains": grains, "water": water, "air": air}
 TABLES = "series", "frames", "steering"
 PARTS = "tank/parts"
 GROUPS = ("preset", *OF_MATTERS, "tank", SHAPES, *TABLES, CHECKS)  # all that is read of a file, and checked before

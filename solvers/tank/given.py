@@ -21,7 +21,8 @@ class Given:
     worlds: int
     pieces = 0
     thickness: float | None = None
-    moved = 0  # particles in a world that are moved one by one
+    count = 0  # particles in a world
+    moved = 0  # of these, those that are moved one by one
     in_bands = 0  # those that the bands of a world are cut by
     start: tuple = ()  # velocities and spins, as `Simulation.launch` takes them, of what starts with some
 

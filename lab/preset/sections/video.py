@@ -81,7 +81,7 @@ class Video:
 
 def colours_of(matters: Collection[str]) -> tuple[str, ...]:
     """The colours of these matters; the first one is painted where none is named. Those of grains for an empty tank."""
-    return tuple(dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS[matter]))
+    return tuple(dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS.get(matter, ())))
 
 
 def check_video(video: Video, matters: Collection[str]) -> None:
