@@ -6,7 +6,7 @@ error, or that of the largest push alone. The samples are means over intervals, 
 """
 
 from lab.measures.driven_load import between
-from lab.measures.gauges import force_gauges, impulse, key, pushes
+from lab.measures.gauges import impulse, key, pushes
 from lab.measures.value import Value
 from lab.recording import Recording
 
@@ -15,7 +15,7 @@ OF = "water"
 
 def applies(recording: Recording) -> bool:
     """There are gauges of force, and more than one sample."""
-    return bool(force_gauges(recording)) and len(recording.series["time"]) > 1
+    return bool(recording.names["edge"]) and len(recording.series["time"]) > 1
 
 
 def measure(recording: Recording) -> dict[str, Value]:
@@ -23,5 +23,5 @@ def measure(recording: Recording) -> dict[str, Value]:
     time, push = between(recording.series["time"]), pushes(recording)
     return {
         key("force_impulse", name): impulse(recording, time, push[..., k], push[..., k], "N s")
-        for k, name in enumerate(force_gauges(recording))
+        for k, name in enumerate(recording.names["edge"])
     }

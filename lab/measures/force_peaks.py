@@ -14,7 +14,7 @@ of the cycles, taken as independent. force_peak_scatter_NAME: the standard devia
 from collections.abc import Mapping
 
 from lab.measures.drawing import BLUE, GREEN, VERMILION, Sheet, band, level
-from lab.measures.gauges import force_gauges, key, panels_of, peaks, pushes
+from lab.measures.gauges import key, panels_of, peaks, pushes
 from lab.measures.value import Value
 from lab.recording import Recording
 
@@ -23,13 +23,13 @@ OF = "water"
 
 def applies(recording: Recording) -> bool:
     """There are gauges of force, and more than one sample: the first is the mean of nothing yet."""
-    return bool(force_gauges(recording)) and len(recording.series["time"]) > 1
+    return bool(recording.names["edge"]) and len(recording.series["time"]) > 1
 
 
 def measure(recording: Recording) -> dict[str, Value]:
     """force_largest_NAME, force_peak_NAME and force_peak_scatter_NAME (N)."""
     push, found = pushes(recording), {}
-    for k, name in enumerate(force_gauges(recording)):
+    for k, name in enumerate(recording.names["edge"]):
         found |= peaks(recording, "force", name, push[..., k], "N")
     return found
 
@@ -37,7 +37,7 @@ def measure(recording: Recording) -> dict[str, Value]:
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """The push on each of the first edges with its mean, and with the mean peak of the cycles."""
     time, push = recording.series["time"], pushes(recording)
-    for k, name, axes in panels_of(sheet, time, force_gauges(recording), "N"):
+    for k, name, axes in panels_of(sheet, time, recording.names["edge"], "N"):
         band(axes, time, push[..., k], BLUE, "push on the edge")
         level(sheet, axes, values.get(key("gauge_mean", name)), f"mean at {name}", GREEN)
         level(sheet, axes, values.get(key("force_peak", name)), f"mean peak at {name}", VERMILION)

@@ -9,7 +9,7 @@ An impact whose 230 ms are not all recorded is left out.
 
 import numpy as np
 
-from lab.measures.gauges import impulse, key, pressure_gauges
+from lab.measures.gauges import impulse, key
 from lab.measures.value import Value
 from lab.recording import Recording
 
@@ -18,7 +18,7 @@ OF = "water"
 
 def applies(recording: Recording) -> bool:
     """There are gauges of pressure, and more than one sample."""
-    return bool(pressure_gauges(recording)) and len(recording.series["time"]) > 1
+    return bool(recording.names["gauge"]) and len(recording.series["time"]) > 1
 
 
 def measure(recording: Recording) -> dict[str, Value]:
@@ -27,5 +27,5 @@ def measure(recording: Recording) -> dict[str, Value]:
     columns = zip(np.moveaxis(series["gauge_pressure"], -1, 0), np.moveaxis(series["gauge_peak"], -1, 0), strict=True)
     return {
         key("gauge_impulse", name): impulse(recording, series["time"], pressure, peak, "Pa s")
-        for name, (pressure, peak) in zip(pressure_gauges(recording), columns, strict=True)
+        for name, (pressure, peak) in zip(recording.names["gauge"], columns, strict=True)
     }

@@ -12,7 +12,7 @@ water that breaks it is a fifth of the peak or more, in experiments as well (Sou
 from collections.abc import Mapping
 
 from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, level
-from lab.measures.gauges import key, panels_of, peaks, pressure_gauges
+from lab.measures.gauges import key, panels_of, peaks
 from lab.measures.value import Value
 from lab.recording import Recording
 
@@ -21,13 +21,13 @@ OF = "water"
 
 def applies(recording: Recording) -> bool:
     """There are gauges of pressure."""
-    return bool(pressure_gauges(recording))
+    return bool(recording.names["gauge"])
 
 
 def measure(recording: Recording) -> dict[str, Value]:
     """gauge_largest_NAME, gauge_peak_NAME and gauge_peak_scatter_NAME (Pa)."""
     found = {}
-    for k, name in enumerate(pressure_gauges(recording)):
+    for k, name in enumerate(recording.names["gauge"]):
         found |= peaks(recording, "gauge", name, recording.series["gauge_peak"][..., k], "Pa")
     return found
 
@@ -35,7 +35,7 @@ def measure(recording: Recording) -> dict[str, Value]:
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """The pressure at each of the first gauges, below it the peaks between samples, and the mean peak of the cycles."""
     time = recording.series["time"]
-    for k, name, axes in panels_of(sheet, time, pressure_gauges(recording), "Pa"):
+    for k, name, axes in panels_of(sheet, time, recording.names["gauge"], "Pa"):
         band(axes, time, recording.series["gauge_peak"][..., k], GREY, "highest between samples")
         band(axes, time, recording.series["gauge_pressure"][..., k], BLUE, "pressure")
         level(sheet, axes, values.get(key("gauge_peak", name)), f"mean peak at {name}", VERMILION)

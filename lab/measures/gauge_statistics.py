@@ -9,7 +9,7 @@ gauge_std_NAME: the standard deviation in the same time. Error: half the differe
 import numpy as np
 
 from lab.measures.driven_load import with_halves
-from lab.measures.gauges import force_gauges, key, level_gauges, pressure_gauges, pushes
+from lab.measures.gauges import key, pushes
 from lab.measures.steady import BLOCKS, LEAST_SAMPLES, Steady, averaged, steady_part
 from lab.measures.value import Value
 from lab.recording import Recording
@@ -37,9 +37,9 @@ def _signals(recording: Recording) -> list[tuple[str, np.ndarray, str]]:
     """The name, the samples (T, W) and the unit of each gauge."""
     series, found = recording.series, []
     for names, read, unit in (
-        (pressure_gauges(recording), lambda: series["gauge_pressure"], "Pa"),
-        (level_gauges(recording), lambda: 1e3 * series["level_depth"], "mm"),
-        (force_gauges(recording), lambda: pushes(recording), "N"),
+        (recording.names["gauge"], lambda: series["gauge_pressure"], "Pa"),
+        (recording.names["level"], lambda: 1e3 * series["level_depth"], "mm"),
+        (recording.names["edge"], lambda: pushes(recording), "N"),
     ):
         values = read() if names else None
         found += [(name, values[..., k], unit) for k, name in enumerate(names)]

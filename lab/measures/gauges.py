@@ -9,7 +9,6 @@ import numpy as np
 from lab.measures.drawing import Sheet
 from lab.measures.motion import driving, soft_start
 from lab.measures.value import Value, over_worlds
-from lab.preset.sections.water.liquid import parted
 from lab.preset.units import show
 from lab.recording import Recording
 
@@ -22,21 +21,6 @@ LEAST_SAMPLES = 10  # of an impact
 COARSE = f"no impact is recorded whole by {LEAST_SAMPLES} samples or more"
 MOST_DRAWN = 4  # gauges of a figure
 FEW = "the run has no whole cycle after its first"
-
-
-def pressure_gauges(recording: Recording) -> list[str]:
-    """Names of the gauges of pressure, in the order of their columns."""
-    return list(parted(recording.preset.gauges)[0])
-
-
-def level_gauges(recording: Recording) -> list[str]:
-    """Names of the gauges of level, in the order of their columns."""
-    return list(parted(recording.preset.gauges)[1])
-
-
-def force_gauges(recording: Recording) -> list[str]:
-    """Names of the gauges of force, in the order of their columns."""
-    return list(parted(recording.preset.gauges)[2])
 
 
 def pushes(recording: Recording) -> np.ndarray:

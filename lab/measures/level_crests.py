@@ -12,7 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.measures.drawing import BLUE, GREEN, VERMILION, Sheet, band, level
-from lab.measures.gauges import highest, key, level_gauges, over_cycles, panels_of
+from lab.measures.gauges import highest, key, over_cycles, panels_of
 from lab.measures.motion import driving
 from lab.measures.value import Value
 from lab.recording import Recording
@@ -22,13 +22,13 @@ OF = "water"
 
 def applies(recording: Recording) -> bool:
     """There are gauges of level in a driven tank."""
-    return bool(level_gauges(recording)) and driving(recording) is not None
+    return bool(recording.names["level"]) and driving(recording) is not None
 
 
 def measure(recording: Recording) -> dict[str, Value]:
     """crest_NAME, trough_NAME, crest_scatter_NAME and trough_scatter_NAME (mm)."""
     raised, found = _raised(recording), {}
-    for k, name in enumerate(level_gauges(recording)):
+    for k, name in enumerate(recording.names["level"]):
         for end, sign in (("crest", 1.0), ("trough", -1.0)):
             ends = [sign * values for values in highest(recording, sign * raised[..., k])]
             mean, scatter = over_cycles(ends, "mm")
@@ -45,7 +45,7 @@ def _raised(recording: Recording) -> np.ndarray:
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """The surface at each of the first level gauges, with the mean crest and the mean trough of the cycles."""
     time, raised = recording.series["time"], _raised(recording)
-    for k, name, axes in panels_of(sheet, time, level_gauges(recording), "mm"):
+    for k, name, axes in panels_of(sheet, time, recording.names["level"], "mm"):
         band(axes, time, raised[..., k], BLUE, "surface over that at the start")
         level(sheet, axes, values.get(key("crest", name)), f"mean crest at {name}", VERMILION)
         level(sheet, axes, values.get(key("trough", name)), f"mean trough at {name}", GREEN)

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band
-from lab.measures.gauges import key, level_gauges
+from lab.measures.gauges import key
 from lab.measures.value import Value, over_worlds
 from lab.preset.sections.water.liquid import spacing
 from lab.recording import Recording
@@ -29,7 +29,7 @@ def applies(recording: Recording) -> bool:
 def measure(recording: Recording) -> dict[str, Value]:
     """run_up_NAME and highest_water (mm)."""
     found = {}
-    for k, name in enumerate(level_gauges(recording)):
+    for k, name in enumerate(recording.names["level"]):
         rise = recording.series["level_depth"][..., k]
         found[key("run_up", name)] = over_worlds(1e3 * (rise.max(axis=0) - rise[0]), "mm")
     if not len(recording.frames["time"]):
@@ -51,7 +51,7 @@ def measure(recording: Recording) -> dict[str, Value]:
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """The depths at the level gauges in time."""
-    names = level_gauges(recording)[: len(COLOURS)]
+    names = recording.names["level"][: len(COLOURS)]
     if not names:
         return
     ((axes,),) = sheet.panels()

@@ -15,7 +15,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.measures.drawing import BLUE, GREY, Sheet, median_band
-from lab.measures.gauges import level_gauges
 from lab.measures.spectrum import PADDING, amplitude_spectrum
 from lab.measures.steady import harmonics
 from lab.measures.value import Value, over_worlds
@@ -86,7 +85,7 @@ def peak_frequency(time: np.ndarray, signal: np.ndarray) -> np.ndarray:
 def _signal(recording: Recording) -> np.ndarray:
     """The depth (T, W) at the first level gauge, or the y of the centre of mass, m; constant where it hardly swings."""
     series = recording.series
-    signal = series["level_depth"][..., 0] if level_gauges(recording) else series["water_centre"][..., 0]
+    signal = series["level_depth"][..., 0] if recording.names["level"] else series["water_centre"][..., 0]
     swings = signal.std(axis=0) > FLAT * depth(recording.preset)
     return np.where(swings, signal, 0.0)
 
@@ -124,7 +123,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     ((axes,),) = sheet.panels(columns=1)
     frequencies, amplitudes = amplitude_spectrum(time, signal)
     kept = (frequencies > 0) & (frequencies < SHOWN * found.value)
-    where = "depth at the level gauge" if level_gauges(recording) else "centre of mass"
+    where = "depth at the level gauge" if recording.names["level"] else "centre of mass"
     median_band(axes, frequencies[kept], 1e3 * amplitudes[kept], BLUE, f"{where}, {'free' if free else 'driven'}")
     axes.axvline(found.value, color=GREY, ls=":", lw=0.8, label=f"highest at {sheet.words(found)}")
     axes.set_xlim(0, SHOWN * found.value)

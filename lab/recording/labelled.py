@@ -4,8 +4,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lab.preset.sections.water.liquid import parted
-
 if TYPE_CHECKING:
     import xarray
 
@@ -26,9 +24,9 @@ def labelled(recording, frames: slice | None = None) -> "xarray.Dataset":
         found[name] = values
         if quantity.components:
             coordinates[quantity.dimension] = list(quantity.components)
-    for owner, gauges in zip(("gauge", "level", "edge"), parted(recording.preset.gauges), strict=True):
+    for owner, names in recording.names.items():
         if any(owner in values.dims for values in found.values()):
-            coordinates[owner] = list(gauges)
+            coordinates[owner] = names
     coordinates["world"] = np.arange(recording.worlds)
     about = {"preset": recording.name, "created": recording.created, "status": recording.status}
     return xarray.Dataset(found, coordinates, about)

@@ -3,7 +3,7 @@
 A table is a group of data sets that grow together, one row at a time. The group `checks` holds a checksum of every row.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import h5py
 import numpy as np
@@ -70,25 +70,30 @@ def frames_of(swell: bool = False, matters: Collection[str] = MATTERS) -> tuple[
 
 def tables_of(preset: Preset, steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
-    afloat, matters, sizes = bool(preset.ship), preset.matters, gauges_of(preset)
-    series = tuple(quantity for quantity in series_of(afloat, matters, bool(preset.axle)) if sizes.get(quantity.per, 1))
+    afloat, matters, names = bool(preset.ship), preset.matters, names_of(preset)
+    whole = series_of(afloat, matters, bool(preset.axle))
+    series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
     tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
     return tables | ({"steering": STEERING} if steered else {})
 
 
-def gauges_of(preset: Preset) -> dict[str, int]:
-    """Numbers of a preset's gauges of pressure, level and force, by the owners of their quantities."""
+def names_of(preset: Preset, parts: Iterable[str] = ()) -> dict[str, list[str]]:
+    """The names of a preset's gauges of pressure, level and force, and of parts, by the owners of their quantities.
+
+    They are in the order of the columns of these quantities.
+    """
     pressure, level, force = parted(preset.gauges)
-    return {"gauge": len(pressure), "level": len(level), "edge": len(force)}
+    return {"gauge": [*pressure], "level": [*level], "edge": [*force], "part": [*parts]}
 
 
 def sizes_of(
-    preset: Preset, radius: np.ndarray, volume: np.ndarray | None, parts: int, air: np.ndarray | None = None
+    names: Mapping[str, Sequence[str]], radius: np.ndarray, volume: np.ndarray | None, air: np.ndarray | None = None
 ) -> dict[str, int]:
     """How many worlds, grains, particles of water and air, parts and gauges there are, by the owners of quantities."""
     worlds, count = radius.shape
     drops, puffs = (0 if volumes is None else volumes.shape[1] for volumes in (volume, air))
-    return {"world": worlds, "grain": count, "drop": drops, "puff": puffs, "part": parts, **gauges_of(preset)}
+    named = {owner: len(those) for owner, those in names.items()}
+    return {"world": worlds, "grain": count, "drop": drops, "puff": puffs, **named}
 
 
 def dtype_of(quantity: Quantity) -> str:
@@ -104,12 +109,20 @@ def rows_of(quantities: Iterable[Quantity], sizes: Mapping[str, int]) -> dict[st
     }
 
 
-def create_tables(file: h5py.File, tables: Mapping[str, Iterable[Quantity]], sizes: Mapping[str, int]) -> None:
-    """Create empty tables of these quantities, and their checksums."""
+def create_tables(
+    file: h5py.File,
+    tables: Mapping[str, Iterable[Quantity]],
+    sizes: Mapping[str, int],
+    names: Mapping[str, Sequence[str]],
+) -> None:
+    """Create empty tables of these quantities, and their checksums; `names` of what has one each, by owner."""
     for name, quantities in tables.items():
         group = file.create_group(name)
         for quantity, (shape, dtype) in zip(quantities, rows_of(quantities, sizes).values(), strict=True):
-            _describe(_create(group, quantity.name, shape, dtype, CHUNK_ROWS), quantity)
+            data = _create(group, quantity.name, shape, dtype, CHUNK_ROWS)
+            _describe(data, quantity)
+            if names.get(quantity.per):
+                data.attrs["names"] = np.array([name.encode() for name in names[quantity.per]])
         checks = _create(file.require_group(CHECKS), name, (len(quantities),), "<u4", CHUNK_ROWS // 4)
         checks.attrs[COLUMNS] = np.array([quantity.name for quantity in quantities], dtype="S")
         checks.attrs[FLUSHED_ROWS] = 0

@@ -21,6 +21,7 @@ from lab.recording.layout import (
     PARTS,
     TABLES,
     described,
+    names_of,
     rows_of,
     sizes_of,
     tables_of,
@@ -55,6 +56,7 @@ class Recording:
     radius (W, n) m, n is 0 without grains; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
     volume (W, n) m² of the particles of water in the plane, air_volume (W, n) of those of air, n is 0 without any;
     outline (m, 2) m; fixed (k, 3): y, z, radius m; open_edges; parts: polylines (m, 2) m by name;
+    names: of the gauges of pressure, level and force and of the parts, in the order of their columns, by owner;
     shapes: the Outlines of irregular grains, None if all are discs.
     series: "time" (T,) s and the other quantities by name, whole arrays (T, W, ...).
     frames: "time" (F,) s and the other quantities by name, (F, W, ...), read from the file by indexing:
@@ -87,6 +89,7 @@ class Recording:
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
             self.parts = {name: self._stored(f"{PARTS}/{name}") for name in self._file[PARTS]}
+            self.names = names_of(self.preset, self.parts)
             shaped = GROUP in self._file
             self.shapes = (
                 read_outlines({name: self._stored(f"{GROUP}/{name}") for name in OF_SHAPES}) if shaped else None
@@ -125,8 +128,8 @@ class Recording:
 
     def _tables(self) -> dict[str, Frames]:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
-        volumes, is_older = (self.volume, len(self.parts), self.air_volume), older.is_older(self.form)
-        sizes = sizes_of(self.preset, self.radius, *volumes)
+        is_older = older.is_older(self.form)
+        sizes = sizes_of(self.names, self.radius, self.volume, self.air_volume)
         wanted = tables_of(self.preset, "steering" in self._file)
         found = {}
         for name, known in wanted.items():

@@ -28,6 +28,7 @@ from lab.recording.layout import (
     PARTS,
     create_tables,
     fixed_text,
+    names_of,
     row_bytes,
     sentence,
     sizes_of,
@@ -114,7 +115,8 @@ def new_recording(
                 store(file, f"{PARTS}/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
-            create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts), air))
+            names = names_of(resolved, parts)
+            create_tables(file, tables_of(resolved, steered), sizes_of(names, radius, volume, air), names)
     return path
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from lab.assembly.scene import build
 from lab.base.errors import LabError
-from lab.measures.gauges import pressure_gauges
 from lab.measures.water_residual import residual
 from lab.preset.accuracy import LEVELS
 from lab.preset.schema import Preset
@@ -142,14 +141,14 @@ def in_tank(recording: Recording) -> Iterator[str]:
     if preset.water.scheme != "lab":
         yield f"models as {preset.water.scheme} has them, as far as the solver does"
     time = recording.series["time"]
-    for k, name in enumerate(pressure_gauges(recording) if len(time) else ()):
+    for k, name in enumerate(recording.names["gauge"] if len(time) else ()):
         value, when = _peak(recording, k)
         yield f"highest pressure at {name}: {show(value, 'Pa')} at {show(when, 's')}" if value else f"{name} stays dry"
 
 
 def facts(recording: Recording) -> dict[str, object]:
     """The numbers of a summary for programs, in SI."""
-    water, names, scene = recording.preset.liquid, pressure_gauges(recording), _scene(recording.preset)
+    water, names, scene = recording.preset.liquid, recording.names["gauge"], _scene(recording.preset)
     found = len(recording.series["time"])
     peaks = {name: _peak(recording, k) for k, name in enumerate(names)} if found else {}
     return {

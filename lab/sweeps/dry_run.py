@@ -21,7 +21,7 @@ from lab.measures.value import Value
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.recording import Recorder, new_recording, open_recording
-from lab.recording.layout import rows_of, sizes_of, tables_of
+from lab.recording.layout import names_of, rows_of, sizes_of, tables_of
 from solvers.machine.quantity import parted
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -61,7 +61,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
         open_edges=scene.open_edges,
         parts=parts,
     )
-    rate, sizes = preset.record.series_rate, sizes_of(preset, radius, volume, len(parts), air)
+    rate, sizes = preset.record.series_rate, sizes_of(names_of(preset, parts), radius, volume, air)
     a_frame = max(1, round(rate / preset.record.picture_rate))
     tables = tables_of(preset, steered=False)
     series, frames = tables["series"], tables["frames"]

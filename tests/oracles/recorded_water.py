@@ -9,7 +9,7 @@ import numpy as np
 from lab.preset.merge import merged
 from lab.preset.schema import Preset, resolve
 from lab.recording import Recorder, new_recording
-from lab.recording.layout import rows_of, sizes_of, tables_of
+from lab.recording.layout import names_of, rows_of, sizes_of, tables_of
 from tests.oracles.synthetic import box
 
 POOL = """
@@ -61,7 +61,7 @@ def record_pool(
         step=1e-3,
         **options,
     )
-    tables, sizes = tables_of(preset, False), sizes_of(preset, np.zeros((1, 0)), volume, 0)
+    tables, sizes = tables_of(preset, False), sizes_of(names_of(preset), np.zeros((1, 0)), volume)
     zero = {
         table: {name: np.zeros(shape) for name, (shape, _) in rows_of(quantities, sizes).items()}
         for table, quantities in tables.items()

@@ -12,7 +12,7 @@ from lab.base.errors import LabError
 from lab.paint.video import render_recording
 from lab.recording import Recorder, layout, new_recording, open_recording
 from lab.recording.checks import Checks
-from lab.recording.layout import GROUPS, rows_of, sizes_of, tables_of
+from lab.recording.layout import GROUPS, names_of, rows_of, sizes_of, tables_of
 from tests.lab.preset.test_malformed import call, refused
 from tests.oracles.recorded_water import POOL, pool
 from tests.oracles.synthetic import frame, recorder, sample
@@ -40,7 +40,7 @@ def record_wet(folder: Path) -> None:
         pool(water={"depth": "0.1 m"}, air={}),
         np.full((1, GRAINS), 4e-4),
     )
-    sizes = sizes_of(preset, np.zeros((1, 0)), volume, 0, volume)
+    sizes = sizes_of(names_of(preset), np.zeros((1, 0)), volume, volume)
     series, frames = (rows_of(tables_of(preset, steered=False)[name], sizes) for name in ("series", "frames"))
     new_recording(
         folder,

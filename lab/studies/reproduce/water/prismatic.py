@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.measures.gauges import pressure_gauges
 from lab.measures.value import Value, over_worlds
 from lab.preset.sections.water.liquid import depth, spacing
 from lab.report.numbers import with_error
@@ -95,7 +94,7 @@ class Pressure:
 
 def pressure(one: Outcome, gauge: str = "P1") -> Pressure:
     """The pressure at a gauge over the last cycles of the run's motion."""
-    series, column = one.recording.series, pressure_gauges(one.recording).index(gauge)
+    series, column = one.recording.series, one.recording.names["gauge"].index(gauge)
     last = _last(one, series["time"])
     return Pressure(series["time"][last], series["gauge_pressure"][last, 0, column])
 
