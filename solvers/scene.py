@@ -86,6 +86,11 @@ class Scene:
         return self.of(Fluid)
 
     @property
+    def axes(self) -> int:
+        """Number of axes: two, those of the plane."""
+        return self.outline.shape[1]
+
+    @property
     def tanks(self) -> tuple[Tank, ...]:
         """All tanks of a world, the first one included."""
         suited = next((matter.thickness for matter in self.matters if matter.thickness), BARE_THICKNESS)

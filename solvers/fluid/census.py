@@ -69,7 +69,8 @@ class Census:
         self.particles, self.constants, self.carrier = particles, constants, carrier
         self.walls, self.order, self.first = pool.walls, pool.order, pool.first
         self.exact, self.closed = arrays.exact, pool.closed
-        self.quantities = (*quantities.SERIES, *(of_air.SERIES if particles.two else ()), quantities.ESCAPED)
+        listed = *quantities.SERIES, *(of_air.SERIES if particles.two else ()), quantities.ESCAPED
+        self.quantities = tuple(quantity.within(particles.axes) for quantity in listed)
         self.at = SimpleNamespace(**{name: k for k, name in enumerate(SUMS)})
         self.columns = places(self.quantities)
         own, world = arrays.under("water.census"), Axis("world", particles.worlds)
@@ -79,8 +80,7 @@ class Census:
         names = "tank_y", "tank_z", "tank_rate", "pull_y", "pull_z", "height"
         self.now = own.reals((world,), *names, kind=arrays.exact, kept=False)
         (self.behind,) = own.reals((world,), "behind", kind=arrays.exact)
-        self.levels = len(levels)
-        room = roomy(self.levels, USUAL)
+        self.levels, room = len(levels), roomy(len(levels), USUAL)
         places_y = padded(np.array([level.y for level in levels]), room)
         self.level_number = own.holding("level_number", np.array([self.levels]), "one", ti.i32)
         self.level_y = own.holding("level_y", places_y, "level", arrays.exact)

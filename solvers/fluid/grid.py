@@ -7,7 +7,7 @@ import numpy as np
 
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR
-from solvers.space.axes import NAMES
+from solvers.machine.quantity import DIRECTIONS
 from solvers.tank.tank import Tank
 
 BIN = 0.5  # length of a bin, in spacings
@@ -113,7 +113,7 @@ def grid_round(
         lower, upper = place.min(axis=0), place.max(axis=0)
         margin = float(np.ptp(place, axis=0).max())
     outline = tanks[0].outline
-    sides = zip(NAMES, np.ptp(outline, axis=0), strict=False)
+    sides = zip(DIRECTIONS, np.ptp(outline, axis=0), strict=False)
     periods = tuple(float(side) if name in water.periodic else 0.0 for name, side in sides)
     corners, origin = (tuple(lower - margin), tuple(upper + margin)), tuple(outline.min(axis=0))
     return Grid(*corners, water.spacing, lanes, periods, origin, len(tanks), watched_box(water, tanks))

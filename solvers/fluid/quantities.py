@@ -1,13 +1,13 @@
 """What is known of the water: its sums and gauges (`census`), and each of its particles (`state`)."""
 
-from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
+from solvers.machine.quantity import Quantity, directions, freedoms
 
 SERIES = (
-    Quantity("water_centre", "m", PLANE, "centre of mass of the water in the tank"),
+    Quantity("water_centre", "m", directions, "centre of mass of the water in the tank"),
     Quantity(
         "water_momentum",
         "N s",
-        PLANE,
+        directions,
         "momentum of the water, and of the air with it, over the earth, in the tank's axes",
     ),
     Quantity("water_kinetic", "J", label="kinetic energy of the water, and of the air with it, relative to the tank"),
@@ -28,8 +28,8 @@ SERIES = (
     Quantity("water_dense", "1", label="share of the water whose density deviates by more than 3 %"),
     Quantity("gauge_pressure", "Pa", label="pressure at each gauge", per="gauge"),
     Quantity("gauge_peak", "Pa", label="highest pressure at each gauge since the last sample", per="gauge"),
-    Quantity("edge_force", "N", PLANE, "force of the water on each edge of the tank", mean=True, per="edge"),
-    Quantity("part_force", "N, N, N m", FREEDOMS, "force of the water on each part in it", mean=True, per="part"),
+    Quantity("edge_force", "N", directions, "force of the water on each edge of the tank", mean=True, per="edge"),
+    Quantity("part_force", "N, N, N m", freedoms, "force of the water on each part in it", mean=True, per="part"),
     Quantity(
         "part_work", "J", label="work of each part on the water since the start, by its motion in the tank", per="part"
     ),
@@ -38,7 +38,9 @@ SERIES = (
 # What the watch asks and no recording has: the number of a particle that has left the tank.
 ESCAPED = Quantity("water_escaped", "1", label="number of a particle outside the tank", never=-1.0)
 FRAMES = (
-    Quantity("water_place", "m", PLANE, "place of each particle of water in the tank", per="drop"),
-    Quantity("water_velocity", "m/s", PLANE, "velocity of each particle of water, relative to the tank", per="drop"),
+    Quantity("water_place", "m", directions, "place of each particle of water in the tank", per="drop"),
+    Quantity(
+        "water_velocity", "m/s", directions, "velocity of each particle of water, relative to the tank", per="drop"
+    ),
     Quantity("water_pressure", "Pa", label="pressure of each particle of water", per="drop"),
 )

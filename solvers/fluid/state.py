@@ -7,7 +7,7 @@ from solvers.fluid.given import Air, Water
 from solvers.fluid.walls.between import MODES
 from solvers.machine.state import Axis, State, roomy
 from solvers.machine.units import Units
-from solvers.space.axes import PLANE, named
+from solvers.space.axes import named
 
 LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
 SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
@@ -47,11 +47,10 @@ class Particles:
     is shared `among` so many worlds, 0: those that there are.
     """
 
-    axes = PLANE
-
     def __init__(
         self,
         arrays: State,
+        axes: int,
         worlds: int,
         count: int,
         lanes: int,
@@ -62,7 +61,7 @@ class Particles:
         among: int = 0,
         narrow: bool = False,
     ):
-        self.worlds, self.count, self.lanes = worlds, count, lanes
+        self.axes, self.worlds, self.count, self.lanes = axes, worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
         sizes = count, count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips, -(-walls // lanes)
         self.wet = roomy(sizes[WET], roomy(1, ROOM // lanes // (among or worlds)))

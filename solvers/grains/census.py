@@ -43,7 +43,7 @@ class Census:
         self.contacts, self.carrier = contacts, carrier
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
-        self.quantities = (*quantities.SERIES, quantities.ESCAPED)
+        self.quantities = tuple(one.within(grains.axes) for one in (*quantities.SERIES, quantities.ESCAPED))
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
         own, scratch = arrays.under("census"), {"kind": arrays.exact, "kept": False}

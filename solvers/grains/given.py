@@ -25,7 +25,7 @@ class Grains(Given):
       `others`, None if there is one kind; `unlike`: the contact materials of pairs of kinds.
     - `normal`, `tangential`, `rolling`, `cohesion`: names of the laws; `stiffness_scale`: the factor on Young's moduli.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
-    - `fixed` (k, 3): y, z and radius in m of grains that never move.
+    - `fixed` (k, axes + 1): place and radius in m of grains that never move.
     - At the start: `start_speed` (m/s), highest closing speed of grains and walls; `velocity` (W, n, 2) m/s, `spin`
       (W, n) rad/s, None: at rest.
     - `integrator`: its name; `base_share`: see `share_to_lengthen`.
@@ -157,7 +157,7 @@ class Grains(Given):
     def farthest_reach(self) -> float:
         """Largest distance (m) from any grain's centre to its outline."""
         reach = self.shapes.reach if self.shapes else 1.0
-        return max(self.sizes[1] * reach, self.fixed[:, 2].max(initial=0.0))
+        return max(self.sizes[1] * reach, self.fixed[:, -1].max(initial=0.0))
 
     @property
     def laws(self) -> tuple:

@@ -33,13 +33,14 @@ def make_grains(scene, setting: Setting) -> GrainMatter:
     laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator)
     laws.wide = setting.vectors if laws.fit and given.bears_vectors and not units.single else 0
     moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
-    grains = GrainState(arrays, *state) if given.shapes is None else ShapedState(arrays, given.shapes, *state)
-    together = given.shapes is None and units.whole
+    discs = given.shapes is None
+    grains = GrainState(arrays, scene.axes, *state) if discs else ShapedState(arrays, given.shapes, *state)
+    together = discs and units.whole
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
     wide = widths(scene, setting.skin, units.single, together)
     skin = Skin(arrays, grains, wide, given.longest_bridge, early, together, walls.moving)
     lists = given.farthest_reach, skin, laws, moduli, setting.room
-    if given.shapes is None:
+    if discs:
         neighbours = Neighbours(arrays, units, grains, walls, *lists)
         contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
     else:

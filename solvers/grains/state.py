@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine.state import Axis, State
-from solvers.space.axes import PLANE, dot, named
+from solvers.space.axes import dot, named
 
 FAR = 1e3  # m
 
@@ -22,12 +22,12 @@ class GrainState:
     (m) is how far from its centre a grain can touch; `spread` its moment of inertia relative to that of the sphere.
     """
 
-    axes = PLANE
     shaped = False  # whether grains have an orientation, `turn_y` and `turn_z` its cosine and sine
 
     def __init__(
         self,
         arrays: State,
+        axes: int,
         radius: np.ndarray,
         density: np.ndarray,
         fixed: np.ndarray,
@@ -36,32 +36,32 @@ class GrainState:
         kind: np.ndarray | None = None,
         spread: np.ndarray | float = 1.0,
     ):
-        self.worlds, self.mobile = radius.shape
+        self.axes, (self.worlds, self.mobile) = axes, radius.shape
         self.fixed = fixed
         self.count = self.mobile + len(fixed)
         self.ghosts, self.may_leave = ghosts, may_leave
         self.real, self.exact = arrays.real, arrays.exact
         self.mixed = arrays.real is not arrays.place
         self.stride = self.count + ghosts  # numbers from a grain of one world to its like of the next
-        own, axes = arrays.under("grains"), "world grain"
+        own, each = arrays.under("grains"), "world grain"
         self.each = Axis("world", self.worlds), Axis("grain", self.stride)
-        self.place = own.reals(self.each, *named("place", self.axes), kind=own.place)
+        self.place = own.reals(self.each, *named("place", axes), kind=own.place)
         (self.angle,) = own.reals(self.each, "angle")
-        *self.velocity, self.spin = own.reals(self.each, *named("velocity", self.axes), "spin")
-        *self.now, self.spin_now = own.reals(self.each, *named("now", self.axes), "spin_now")
-        *self.force, self.torque = own.reals(self.each, *named("force", self.axes), "torque")
+        *self.velocity, self.spin = own.reals(self.each, *named("velocity", axes), "spin")
+        *self.now, self.spin_now = own.reals(self.each, *named("now", axes), "spin_now")
+        *self.force, self.torque = own.reals(self.each, *named("force", axes), "torque")
         self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
-        self.radius = own.holding("radius", self._filled(radius, fixed[:, 2], 0.0), axes, kept=True)
+        self.radius = own.holding("radius", self._filled(radius, fixed[:, -1], 0.0), each, kept=True)
         self.reach = self.radius
-        self.inverse_mass = own.holding("inverse_mass", self._filled(1.0 / self.mass, 0.0, 0.0), axes, kept=True)
+        self.inverse_mass = own.holding("inverse_mass", self._filled(1.0 / self.mass, 0.0, 0.0), each, kept=True)
         inverse_inertia = 2.5 / (self.mass * radius**2 * spread)
         inverse_inertia = self._filled(inverse_inertia, 0.0, 0.0)
-        self.inverse_inertia = own.holding("inverse_inertia", inverse_inertia, axes, kept=True)
+        self.inverse_inertia = own.holding("inverse_inertia", inverse_inertia, each, kept=True)
         if kind is not None:
-            self.kind = own.holding("kind", self._filled(kind, 0.0, 0.0), axes, ti.i32, kept=True)
+            self.kind = own.holding("kind", self._filled(kind, 0.0, 0.0), each, ti.i32, kept=True)
         if may_leave:
-            self.present = own.holding("present", np.ones((self.worlds, self.stride)), axes, kept=True)
-            self.spilled = own.holding("spilled", np.zeros((self.worlds, self.stride)), axes, kept=True)
+            self.present = own.holding("present", np.ones((self.worlds, self.stride)), each, kept=True)
+            self.spilled = own.holding("spilled", np.zeros((self.worlds, self.stride)), each, kept=True)
 
     def _filled(self, values: np.ndarray, fixed: np.ndarray | float, ghost: float) -> np.ndarray:
         """Values (W, n) of the grains that move, with those of the fixed ones and the ghosts after them."""

@@ -3,13 +3,14 @@
 Whoever stores, draws or explains numbers reads these declarations and keeps no list of names, units or labels.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-PLANE = ("y", "z")
-FREEDOMS = ("y", "z", "roll")
+PLANE, SPACE = 2, 3  # numbers of axes
+DIRECTIONS = ("y", "z", "x")  # of the axes, in the order of all arrays
+ROTATIONS = ("pitch", "yaw", "roll")  # about these
 OWNERS = {
     "run": (),
     "world": ("world",),
@@ -21,28 +22,63 @@ OWNERS = {
     "level": ("world", "level"),
     "edge": ("world", "edge"),
 }
-DIMENSIONS = {PLANE: "axis", FREEDOMS: "freedom"}  # what runs over components that many quantities have
+
+
+def directions(axes: int) -> tuple[str, ...]:
+    """Names of the components of a vector in a scene of so many axes."""
+    return DIRECTIONS[:axes]
+
+
+def rotations(axes: int) -> tuple[str, ...]:
+    """Names of the components of a rotation, none in the plane: there it is a single number, about x."""
+    return ROTATIONS if axes > PLANE else ()
+
+
+def freedoms(axes: int) -> tuple[str, ...]:
+    """Names of the freedoms of a body: along the axes, then about them."""
+    return (*directions(axes), *(rotations(axes) or ROTATIONS[-1:]))
+
+
+# What runs over components that many quantities have
+DIMENSIONS = {
+    named(axes): what for axes in (PLANE, SPACE) for named, what in ((directions, "axis"), (freedoms, "freedom"))
+}
+DIMENSIONS[ROTATIONS] = "rotation"
 
 
 @dataclass(frozen=True)
 class Quantity:
     """What an array of numbers means.
 
-    name: of the array; unit: SI, "1" of a pure number, "N, N, N m" where the components have different ones;
-    components: their names, none of a single number; label: what it is, for people, a noun without an article;
-    mean: whether it is averaged over the time since the last sample, else it is that of the instant; per: what has
-    one each, a key of OWNERS; never: the value that stands for "has not happened"; plot: whether a run's report draws
-    it against time in a figure of its own.
+    name: of the array; unit: SI, "1" of a pure number, "N, N, N m" where the components have different ones; over:
+    their names, none of a single number, or `directions`, `rotations` or `freedoms`, which tell them from the number
+    of the scene's axes, `space`; label: what it is, for people, a noun without an article; mean: whether it is averaged
+    over the time since the last sample, else it is that of the instant; per: what has one each, a key of OWNERS; never:
+    the value that stands for "has not happened"; plot: whether a run's report draws it against time in a figure of its
+    own.
     """
 
     name: str
     unit: str
-    components: tuple[str, ...] = ()
+    over: tuple[str, ...] | Callable[[int], tuple[str, ...]] = ()
     label: str = ""
     mean: bool = False
     per: str = "world"
     never: float | None = None
     plot: bool = False
+    space: int = PLANE
+
+    def within(self, axes: int) -> "Quantity":
+        """The quantity in a scene of so many axes; of different units the first is that along them."""
+        unit, (along, *_, about) = self.unit, (*self.units, self.units[-1])
+        if along != about:
+            unit = ", ".join(along if name in DIRECTIONS else about for name in self.over(axes))
+        return replace(self, space=axes, unit=unit)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of its components, none of a single number."""
+        return self.over(self.space) if callable(self.over) else self.over
 
     @property
     def shape(self) -> tuple[int, ...]:

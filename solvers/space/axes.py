@@ -2,21 +2,32 @@
 
 This is a cyclic permutation of x, y, z: the plane is the first two, and cross products stay right-handed.
 
-The number of axes is known when kernels are compiled. A vector is a list with one entry per axis, and loops over axes
-are unrolled: the resulting code is that of separately named scalars. (A Taichi vector cannot have components that are
-themselves vectors of lanes.)
+The number of axes is the scene's and known when kernels are compiled. A vector is a list with one entry per axis, a
+rotation one with an entry per axis about which a body can turn: about x in the plane. Loops over either are unrolled:
+the resulting code is that of separately named scalars. (A Taichi vector cannot have components that are themselves
+vectors of lanes.)
 """
 
 import taichi as ti
 
-PLANE = 2  # axes of the plane
+from solvers.machine.quantity import directions, rotations
+
 UP = 1  # index of z
-NAMES = ("y", "z", "x")
+
+
+def turns(axes: int) -> int:
+    """Number of axes about which a body can turn: one in the plane, three in space."""
+    return axes * (axes - 1) // 2
 
 
 def named(what: str, axes: int) -> tuple[str, ...]:
-    """Names of the arrays of a quantity, one per axis."""
-    return tuple(f"{what}_{name}" for name in NAMES[:axes])
+    """Names of the arrays of a vector, one per axis."""
+    return tuple(f"{what}_{name}" for name in directions(axes))
+
+
+def named_turns(what: str, axes: int) -> tuple[str, ...]:
+    """Names of the arrays of a rotation, one per axis about which a body can turn; of a single one, that alone."""
+    return tuple(f"{what}_{name}" for name in rotations(axes)) or (what,)
 
 
 @ti.func

@@ -4,17 +4,17 @@ A tank on an axle has further ones (`motion.axle`). Files of quantities import n
 need none.
 """
 
-from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
+from solvers.machine.quantity import Quantity, directions, freedoms
 
-POSE = Quantity("pose", "m, m, rad", FREEDOMS, "place and roll of the tank in the earth's axes")
-POSE_RATE = Quantity("pose_rate", "m/s, m/s, rad/s", FREEDOMS, "velocity and rate of roll of the tank")
+POSE = Quantity("pose", "m, m, rad", freedoms, "place and roll of the tank in the earth's axes")
+POSE_RATE = Quantity("pose_rate", "m/s, m/s, rad/s", freedoms, "velocity and rate of roll of the tank")
 WALL_FORCE = Quantity(
-    "wall_force", "N, N, N m", FREEDOMS, "force of the cargo on the tank, in the tank's axes", mean=True
+    "wall_force", "N, N, N m", freedoms, "force of the cargo on the tank, in the tank's axes", mean=True
 )
 SERIES = (POSE, POSE_RATE, WALL_FORCE)
 FRAMES = (
     POSE,
-    Quantity("part", "m", PLANE, "displacement of each moving part in the tank", per="part"),
+    Quantity("part", "m", directions, "displacement of each moving part in the tank", per="part"),
     Quantity("part_turn", "rad", label="angle by which each part has turned in the tank", per="part", never=0.0),
 )
 OF_AXLE = (

@@ -8,7 +8,7 @@ from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.gauges import probes
 from solvers.fluid.walls.layers import edge_of, faces, firm, layers, sharp, straight
-from solvers.space.axes import NAMES
+from solvers.machine.quantity import DIRECTIONS
 from solvers.tank.tank import Tank
 
 OF_NONE = -1  # the edge of probes, which are no part of a wall
@@ -68,7 +68,7 @@ def _round(water: Water, tank: Tank) -> tuple[np.ndarray, np.ndarray, np.ndarray
     rows = int(np.ceil(water.reach / water.spacing - 1e-9))
     points, volumes, depths = layers(tank.outline, water.spacing, rows, tank.open_edges)
     for axis, (low, high) in enumerate(zip(tank.outline.min(axis=0), tank.outline.max(axis=0), strict=True)):
-        if NAMES[axis] in water.periodic:
+        if DIRECTIONS[axis] in water.periodic:
             kept = (points[:, axis] >= low) & (points[:, axis] < high)
             points, volumes, depths = points[kept], volumes[kept], depths[kept]
     return points, volumes, depths

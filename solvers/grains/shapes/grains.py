@@ -7,6 +7,7 @@ from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.shapes.pose import posed
 from solvers.grains.state import GrainState
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
 
 DISC = Contour(1.0)
@@ -35,7 +36,7 @@ class ShapedState(GrainState):
     ):
         outlines = with_disc(shapes)
         spread = np.array([outline.spread for outline in outlines])[shapes.which]
-        super().__init__(arrays, radius, density, fixed, ghosts, may_leave, kind, spread)
+        super().__init__(arrays, PLANE, radius, density, fixed, ghosts, may_leave, kind, spread)
         self.y, self.z = self.place
         bounding = np.array([outline.bounding_radius for outline in outlines])[shapes.which]
         self.start_angle = shapes.angle
@@ -43,7 +44,7 @@ class ShapedState(GrainState):
         disc = len(outlines) - 1
         own, axes = arrays.under("grains"), "world grain"
         self.shape = own.holding("shape", self._filled(shapes.which, disc, disc), axes, ti.i32, kept=True)
-        self.reach = own.holding("reach", self._filled(radius * bounding, fixed[:, 2], 0.0), axes, kept=True)
+        self.reach = own.holding("reach", self._filled(radius * bounding, fixed[:, -1], 0.0), axes, kept=True)
         self.turn_y, self.turn_z = own.reals(self.each, "turn_y", "turn_z")
 
     def put(self, position: np.ndarray) -> None:

@@ -15,7 +15,7 @@ from lab.recording.layout import STEERING, frames_of, series_of
 from lab.sweeps.dry_run import available_measures
 from solvers.grains import quantities as grains
 from solvers.grains.census import Census
-from solvers.machine.quantity import FREEDOMS, PLANE, Quantity, parted, places
+from solvers.machine.quantity import SPACE, Quantity, directions, freedoms, parted, places, rotations
 from tests.oracles.synthetic import frame, recorder, sample
 
 TINY = {
@@ -79,11 +79,25 @@ def test_every_quantity_has_a_unit_and_a_label_for_each_component():
 
 
 def test_a_row_is_split_as_it_was_laid_out():
-    listed = Quantity("a", "m", PLANE), Quantity("b", "J"), Quantity("c", "N, N, N m", FREEDOMS)
+    listed = Quantity("a", "m", directions), Quantity("b", "J"), Quantity("c", "N, N, N m", freedoms)
     assert places(listed) == {"a": 0, "b": 2, "c": 3}
     found = parted(np.arange(12.0).reshape(2, 6), listed)
     assert found["a"].tolist() == [[0, 1], [6, 7]] and found["b"].tolist() == [2, 8]
     assert found["c"].tolist() == [[3, 4, 5], [9, 10, 11]] and listed[2].units == ("N", "N", "N m")
+
+
+def test_components_are_those_of_the_scenes_axes():
+    """y, z, x, then about y, z and x; a rotation in the plane is a single number, and one unit is that of all."""
+    force, spin = Quantity("a", "N, N, N m", freedoms), Quantity("b", "rad/s", rotations)
+    assert (force.components, force.dimension) == (("y", "z", "roll"), "freedom")
+    assert (spin.shape, spin.width, spin.units, spin.axes) == ((), 1, ("rad/s",), ("time", "world"))
+    force, spin, place = (one.within(SPACE) for one in (force, spin, Quantity("c", "m", directions)))
+    assert (force.components, force.dimension) == (("y", "z", "x", "pitch", "yaw", "roll"), "freedom")
+    assert force.units == ("N",) * 3 + ("N m",) * 3
+    assert (spin.components, spin.units, spin.dimension) == (("pitch", "yaw", "roll"), ("rad/s",) * 3, "rotation")
+    assert (place.components, place.units, place.axes) == (("y", "z", "x"), ("m",) * 3, ("time", "world", "axis"))
+    named = Quantity("d", "J", ("left", "right"))
+    assert named.within(SPACE).components == ("left", "right") and Quantity("e", "J").within(SPACE).shape == ()
 
 
 @pytest.fixture(scope="module")
