@@ -3,7 +3,6 @@
 import taichi as ti
 
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
-from solvers.grains.laws.extremes import greater
 from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.state import FAR, GrainState
 from solvers.machine.state import Axis, State
@@ -11,6 +10,7 @@ from solvers.machine.units import Units
 from solvers.machine.wide import minus
 from solvers.space import tangent
 from solvers.space.axes import dot, named
+from solvers.space.extremes import greater
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 

@@ -3,9 +3,9 @@
 import taichi as ti
 
 from solvers.grains.laws.chosen import ChosenLaws
-from solvers.grains.laws.extremes import greater
 from solvers.machine.state import Axis
 from solvers.machine.units import APART
+from solvers.space.extremes import greater
 
 SOFTEST = 1e-6  # N/m: a contact that only just touches
 

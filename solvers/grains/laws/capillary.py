@@ -4,10 +4,10 @@ from math import pi
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus, size
+from solvers.space.extremes import greater, lesser
 
 STEPS = 36.0  # per period of two grains that oscillate about the balance of pull and elasticity
 ROUNDS = 3  # in which a pull and the way of its step are found; a fourth changes a film's work by some per cent at most

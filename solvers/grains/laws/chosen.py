@@ -4,10 +4,10 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.integrators.verlet import Verlet
-from solvers.grains.laws.extremes import greater
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.machine.wide import enter, entry
+from solvers.space.extremes import greater
 
 PAIR, WALL = 0, 1  # rows of the interfaces if all grains are of one kind
 NEAR = 0.01  # of an overlap: step of the difference quotient of its energy

@@ -2,11 +2,11 @@
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus
+from solvers.space.extremes import greater, lesser, within
 
 TURNING = 1e-3  # rad/s, where the ramp ends: under the full torque a 3 mm grain creeps 5 mm an hour
 SMALLEST_TORQUE = 1e-30  # N m; keeps the division finite in contacts without normal force

@@ -2,11 +2,11 @@
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging, relieved
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus, size
+from solvers.space.extremes import greater, lesser, within
 
 SLIP = 1e-6  # m/s, where the ramp ends: creep of 4 mm an hour under a load at the Coulomb cap
 SMALLEST_FORCE = 1e-30  # N; keeps the division finite in contacts without normal force

@@ -2,13 +2,13 @@
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import within
 from solvers.grains.laws.history import M_T, STIFFEST, over_the_step, stiffening
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
+from solvers.space.extremes import within
 
 
 @ti.data_oriented

@@ -4,12 +4,12 @@ from math import sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import within
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import AT_ONCE, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
+from solvers.space.extremes import within
 
 
 @ti.data_oriented

@@ -2,12 +2,12 @@
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.hertz import Hertz, hertz_duration
 from solvers.grains.laws.kick import cut_at_zero, reached
 from solvers.grains.materials import Interface
 from solvers.grains.restitution import CONSTANT, damping_for
 from solvers.machine.limit import Limit
+from solvers.space.extremes import greater
 
 # Steps per collision, at least and times g: restitution 0.02 … 1 is right to 0.1 %, measured.
 STEPS, DAMPED_STEPS = 28.0, 50.0

@@ -4,11 +4,11 @@ from math import sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
 from solvers.grains.laws.kick import cut_at_zero, reached
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
+from solvers.space.extremes import greater
 
 BORNE = 2.0  # of the damper's derived step: longer ones are not stable in the most compressed packings
 LEAST = 1e-3  # x of a damper that limits nothing

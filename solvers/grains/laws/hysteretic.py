@@ -4,11 +4,11 @@ from math import pi, sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry
+from solvers.space.extremes import greater
 
 STEPS = 36.0  # per half period of the stiffer, unloading spring; restitution 0.02 … 1 is right to 0.1 %
 

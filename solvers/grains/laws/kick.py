@@ -9,8 +9,8 @@ longer matters. The spring keeps its value at the middle, so that it stays a for
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.machine.wide import minus
+from solvers.space.extremes import greater, lesser
 
 
 @ti.func

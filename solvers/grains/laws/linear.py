@@ -4,13 +4,13 @@ from math import pi, sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import felt_rate
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.grains.restitution import damping_ratio_for
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry
+from solvers.space.extremes import greater
 
 # Steps per half undamped period, at least and times ζ: measured with `felt_rate`, restitution 0.02 … 1 right to 0.1 %.
 STEPS, DAMPED_STEPS = 52.0, 240.0

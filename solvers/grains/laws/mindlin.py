@@ -4,12 +4,12 @@ from math import sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.history import M_T, STIFFEST, over_the_step, stiffening
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
+from solvers.space.extremes import greater, lesser, within
 
 RESOLVED = 0.09  # (ω_t Δt)², for a slip right to 1.2 %
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none

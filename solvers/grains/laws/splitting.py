@@ -4,7 +4,7 @@ from math import inf, sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser, within
+from solvers.space.extremes import greater, lesser, within
 
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
 # The contacts of a grain act on it together: a network of them is as stiff as one contact times the largest eigenvalue

@@ -5,9 +5,9 @@ from math import pi
 import numpy as np
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater
 from solvers.grains.shapes.contour import Contour
 from solvers.machine.state import State
+from solvers.space.extremes import greater
 
 CELLS, SAMPLES = 512, 2048  # directions of a table, and points of an outline
 TRIED = 32  # directions of half a turn in which two grains are looked at

@@ -5,10 +5,10 @@ from math import ceil, log2, pi
 import numpy as np
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.contour import Contour
 from solvers.machine.errors import BadOutline
 from solvers.machine.state import State
+from solvers.space.extremes import greater, lesser
 
 ERROR = 1e-6  # of R0, the largest error of a table
 LEAST, MOST = 64, 4096  # cells

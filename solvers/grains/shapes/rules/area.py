@@ -4,7 +4,6 @@ from math import sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.shapes.grains import with_disc
 from solvers.grains.shapes.pose import turned, turned_back
@@ -15,6 +14,7 @@ from solvers.grains.shapes.rules.wall import FAR, SeenWalls
 from solvers.grains.shapes.tables import TINY, Tables
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.space.extremes import greater, lesser
 from solvers.tank.walls import Walls
 
 WINDOW = 1.0 / 32.0  # of the smaller grain's radius: distance within which edges are evaluated

@@ -4,9 +4,9 @@ import taichi as ti
 
 from solvers.grains.contacts import Contacts, gathered
 from solvers.grains.laws.chosen import PAIR, WALL
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, SURE
 from solvers.machine.wide import enter, entry, minus
+from solvers.space.extremes import greater, lesser
 
 
 @ti.data_oriented

@@ -4,7 +4,6 @@ from math import pi
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.shapes.grains import with_disc
 from solvers.grains.shapes.pose import turned
@@ -40,6 +39,7 @@ from solvers.grains.shapes.tables import TINY, Tables, advanced
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.machine.wide import enter
+from solvers.space.extremes import greater, lesser, within
 from solvers.tank.walls import Walls
 
 ROOM = 32  # most contacts of a grain with another grain or with one wall

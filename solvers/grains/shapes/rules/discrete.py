@@ -4,7 +4,6 @@ from math import pi
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import lesser
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.shapes.grains import with_disc
 from solvers.grains.shapes.pose import turned, turned_back
@@ -17,6 +16,7 @@ from solvers.grains.shapes.tables import Tables
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.machine.wide import enter
+from solvers.space.extremes import lesser
 from solvers.tank.walls import Walls
 
 NEAR = 0.01  # of the distance between nodes: slide of a contact after which neighbouring nodes are checked

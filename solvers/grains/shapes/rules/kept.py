@@ -2,10 +2,10 @@
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.rules.rest import STILL, SURE
 from solvers.grains.shapes.rules.tracked import NONE, Tracked
 from solvers.machine.wide import enter
+from solvers.space.extremes import greater, lesser
 
 # Memory of a contact with a wall, and what a contact of two grains has in addition; *_BENT for non-convex outlines.
 WALL, WALL_BENT = ("place_first",), ("saddle_first", SURE)

@@ -5,12 +5,12 @@ from math import ceil
 import numpy as np
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater
 from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.lists.wear import NEVER
 from solvers.grains.shapes.rules.rest import STILL
 from solvers.grains.shapes.support import Support
 from solvers.machine.wide import enter
+from solvers.space.extremes import greater
 
 BENT_PLACES = 4  # initial entries per pair if an outline is non-convex
 

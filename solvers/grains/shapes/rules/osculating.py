@@ -5,12 +5,12 @@ from math import inf
 import numpy as np
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.rules.rest import HOLDS, OVERLAP, Rest
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.machine.wide import minus, size
+from solvers.space.extremes import greater, lesser
 
 CURVED_I, CURVED_J = HOLDS + 1, HOLDS + 2  # elements of a rule's contact: radii of curvature (m)
 OFF, LONGEST = 1e-7, 0.02  # of R0: error of an overlap after a slide, and the longest slide

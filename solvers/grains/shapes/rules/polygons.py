@@ -5,11 +5,11 @@ from math import pi
 import numpy as np
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.pose import turned, turned_back
 from solvers.grains.shapes.tables import TINY
 from solvers.machine.state import State
+from solvers.space.extremes import greater, lesser, within
 
 # Elements of a shared area: the area A (m²); the integral ∫ n dl (m) of the outward normals of the first outline's part
 # inside the other; the moments ∫ r n dl (m²) about the first outline's centre.

@@ -3,12 +3,12 @@
 import taichi as ti
 
 from solvers.grains.contacts import gathered
-from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.lists.neighbours import LANES
 from solvers.grains.lists.wear import NEVER
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.machine.wide import enter, entry, size
+from solvers.space.extremes import greater, lesser
 
 # Elements of a rule's contact: overlap (m), unit normal, point from the first grain's centre (m), whether it exists.
 OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS = range(6)

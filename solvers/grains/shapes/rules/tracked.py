@@ -4,10 +4,10 @@ from math import pi
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.shapes.pose import turned, turned_back
 from solvers.grains.shapes.tables import Tables, advanced, radius_of_curvature
 from solvers.machine.state import Axis, State
+from solvers.space.extremes import greater, lesser, within
 
 TRIES = 40  # most Newton steps in seeking a contact
 LONGEST = 0.1  # rad of polar angle: the longest Newton step along an outline
