@@ -8,10 +8,9 @@ import numpy as np
 
 from lab.assembly.collisions import known_collisions
 from lab.assembly.grains import check_softness, grain_count, grains_of
-from lab.assembly.matters import others_of
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
-from lab.assembly.water import most_drops, particles, water_aboard
+from lab.assembly.water import fluid_of, most_drops, particles, water_aboard
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.parts import parts_of
@@ -24,6 +23,8 @@ from solvers.motion.steered import Steered
 from solvers.scene import Scene
 from solvers.ship.vessel import Vessel
 
+# What the solver is told of each matter beside grains, whose places are found with them
+OTHERS = {"water": fluid_of}
 # A step twice the derived one suits closing speeds of a 32nd; four times is more than the Rayleigh time ever allows.
 LONGEST_STRIDE = 2
 LARGEST_POWER = 5  # of two: of more base steps strides need not be powers of two (`solvers.time.sequence.BAR`)
@@ -44,7 +45,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     grains, position = grains_of(preset)
     scene = Scene(
         outline=np.array(preset.tank.corners),
-        matters=((grains,) if grains else ()) + others_of(preset),
+        matters=(*((grains,) if grains else ()), *(OTHERS[name](preset) for name in OTHERS if name in preset.matters)),
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * worlds,
         soft_start=preset.motion.soft_start,

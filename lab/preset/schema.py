@@ -47,8 +47,7 @@ from solvers.tank.tank import BARE_THICKNESS
 from solvers.tank.tank import Tank as SlabTank
 
 FORMAT = 3
-# The keys of the matters that a tank may hold; air is water's second phase
-MATTERS = ("grains", "water", "air")
+MATTERS = ("grains", "water", "air")  # the keys of the matters that a tank may hold; air is water's second phase
 
 
 @dataclass(frozen=True)

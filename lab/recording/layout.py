@@ -112,10 +112,11 @@ def rows_of(quantities: Iterable[Quantity], sizes: Mapping[str, int]) -> dict[st
 def create_tables(
     file: h5py.File,
     tables: Mapping[str, Iterable[Quantity]],
-    sizes: Mapping[str, int],
     names: Mapping[str, Sequence[str]],
+    *particles: np.ndarray | None,
 ) -> None:
-    """Create empty tables of these quantities, and their checksums; `names` of what has one each, by owner."""
+    """Create empty tables of these quantities, and their checksums; `names` and `particles` as of `sizes_of`."""
+    sizes = sizes_of(names, *particles)
     for name, quantities in tables.items():
         group = file.create_group(name)
         for quantity, (shape, dtype) in zip(quantities, rows_of(quantities, sizes).values(), strict=True):

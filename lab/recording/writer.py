@@ -31,7 +31,6 @@ from lab.recording.layout import (
     names_of,
     row_bytes,
     sentence,
-    sizes_of,
     store,
     tables_of,
 )
@@ -115,8 +114,7 @@ def new_recording(
                 store(file, f"{PARTS}/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
-            names = names_of(resolved, parts)
-            create_tables(file, tables_of(resolved, steered), sizes_of(names, radius, volume, air), names)
+            create_tables(file, tables_of(resolved, steered), names_of(resolved, parts), radius, volume, air)
     return path
 
 
