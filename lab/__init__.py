@@ -36,7 +36,7 @@ def run(
     with importing():
         from lab.runs.runner import run_preset
 
-    return run_preset(preset, _dotted(overrides, repeats), out, video=video, plots=plots, quiet=quiet)
+    return run_preset(preset, dotted(overrides, repeats), out, video=video, plots=plots, quiet=quiet)
 
 
 def sweep(
@@ -57,7 +57,7 @@ def sweep(
     """
     from lab.sweeps.sweep import run_sweep
 
-    return run_sweep(preset, axes, _dotted(overrides, repeats), out, video=video, quiet=quiet, cluster=cluster)
+    return run_sweep(preset, axes, dotted(overrides, repeats), out, video=video, quiet=quiet, cluster=cluster)
 
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
@@ -68,6 +68,7 @@ def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Re
     return resume_any(folder, video=video, quiet=quiet)
 
 
-def _dotted(overrides: Mapping[str, object], repeats: int | None) -> dict[str, object]:
+def dotted(overrides: Mapping[str, object], repeats: int | None = None) -> dict[str, object]:
+    """The overrides of a call as dotted keys, `__` standing for the dot."""
     given = {key.replace("__", "."): value for key, value in overrides.items()}
     return given if repeats is None else given | {"run.repeats": repeats}

@@ -32,8 +32,9 @@ FLOORS = {  # from the ground up: a room imports those before it
         *("base", "preset", "assembly", "naval", "recording", "measures", "paint", "report"),
         *("runs", "sweeps", "view", "studies", "cli"),
     ),
+    "cargolab": ("_hidden", "_calls"),
 }
-FACES = "solvers", "lab", "lab.__main__"  # they hand on what the rooms offer
+FACES = "solvers", "lab", "lab.__main__", "cargolab", "cargolab.__main__"  # they hand on what the rooms offer
 FOR_ALL = "solvers", "lab.__version__"  # what every room may ask a face for: that Taichi is set up, the version
 ASKED = "lab.sweeps.cluster imports lab"  # by a function that travels to a worker, for the version of the lab there
 
@@ -54,14 +55,14 @@ LONG = {  # too long, and not to become longer
 
 @cache
 def modules() -> dict[str, Path]:
-    """The files of both packages, by their dotted names."""
+    """The files of all packages, by their dotted names."""
     files = [path for package in FLOORS for path in sorted((ROOT / package).rglob("*.py"))]
     return {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path for path in files}
 
 
 @cache
 def imported(name: str) -> tuple[str, ...]:
-    """What a module imports of both packages, at its head or inside a function: modules, or names of a face."""
+    """What a module imports of these packages, at its head or inside a function: modules, or names of a face."""
     return tuple(_imported(name))
 
 
@@ -86,14 +87,20 @@ def floor(name: str) -> int:
     return FLOORS[package].index(room)
 
 
+def storey(package: str) -> int:
+    """How high a package is above the ground."""
+    return list(FLOORS).index(package)
+
+
 def uphill() -> list[str]:
     """The imports that run up."""
     found = []
     for name in modules().keys() - set(FACES):
         for other in set(imported(name)) - set(FOR_ALL):
             package = name.split(".")[0]
-            same = other.split(".")[0] == package
-            up = other in FACES or floor(other) > floor(name) if same else package == "solvers"
+            theirs = other.split(".")[0]
+            same, higher = theirs == package, storey(theirs) > storey(package)
+            up = other in FACES or floor(other) > floor(name) if same else higher
             found += [f"{name} imports {other}"] * up
     return sorted(set(found) - {ASKED})
 

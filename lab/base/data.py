@@ -1,9 +1,10 @@
-"""Measured series that are not shipped: they are in the folder that the environment variable CARGOLAB_DATA names."""
+"""Where data lie: the shipped presets, and measured series, which are not shipped but in a folder of the user's."""
 
 import os
 from pathlib import Path
 
-FOLDER = "CARGOLAB_DATA"
+PRESETS = Path(__file__).parents[2] / "presets"  # beside the lab; not found by its name, which a user's folder may have
+FOLDER = "CARGOLAB_DATA"  # the environment variable that names the folder of measured series
 PREFIX = f"${FOLDER}/"  # begins the name of a file in that folder
 
 

@@ -13,13 +13,12 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache, reduce
-from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lab.base import toml
-from lab.base.data import FOLDER, PREFIX, data_file
+from lab.base.data import FOLDER, PREFIX, PRESETS, data_file
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
 from lab.preset import formats
@@ -193,7 +192,7 @@ def _shipped() -> dict[str, Traversable]:
             elif entry.name.endswith(".toml"):
                 yield path + entry.name.removesuffix(".toml"), entry
 
-    return dict(sorted(below(files("presets"), "")))
+    return dict(sorted(below(PRESETS, "")))
 
 
 def _find_variant(name: str) -> tuple[Source, bool]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import matplotlib
 
+from lab.base.data import PRESETS
 from lab.base.errors import LabError
 from lab.report.kept import Made, plain, read, write
 from lab.report.page import Page, render
@@ -38,8 +39,8 @@ def choose(names: Collection[str], known: Iterable[str], what: str, usual: Colle
 def code() -> str:
     """A hash of what makes results: the source of lab and solvers, their data, and the presets."""
     digest = blake2b(sources().encode(), digest_size=16)
-    for package in ("lab", "solvers", "presets"):
-        for path in sorted(Path(str(files(package))).rglob("*.toml")):
+    for home in (Path(str(files("lab"))), Path(str(files("solvers"))), PRESETS):
+        for path in sorted(home.rglob("*.toml")):
             digest.update(path.read_bytes())
     return digest.hexdigest()
 

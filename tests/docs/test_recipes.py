@@ -24,7 +24,7 @@ MASS = 4.0 / 3.0 * pi * RADIUS**3 * DENSITY
 def tree(tmp_path_factory):
     """A copy of the lab with all recipes in it."""
     folder = tmp_path_factory.mktemp("tree")
-    for package in ("lab", "solvers", "presets"):
+    for package in ("cargolab", "lab", "solvers", "presets"):
         shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
     for kind, text in BLOCK.findall(PAGE):
         if kind == "diff":

@@ -1,0 +1,91 @@
+"""What `cargolab` offers: each call hands on to the room of `lab` that does it, which it loads only then."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lab import __version__, dotted, resume, run, sweep
+
+if TYPE_CHECKING:
+    from lab.recording import Recording
+    from lab.sweeps.calibration_report import Calibration
+
+__all__ = ["__version__", "calibrate", "explain", "open", "presets", "render", "resume", "run", "sweep", "view"]
+
+
+def calibrate(
+    preset: str,
+    target: str,
+    vary: str,
+    out: Path | str | None = None,
+    *,
+    repeats: int | None = None,
+    quiet: bool = False,
+    cluster: str | None = None,
+    **overrides: object,
+) -> "Calibration":
+    """Find the value of a key at which a measure meets its target, with its interval.
+
+    `cargolab.calibrate("tilting/chickpeas-quick", "repose=30 deg", "friction=0.2:0.7")`; the target may have a standard
+    error, "repose=30 ± 0.8 deg". At least eight beds are run. cluster: the address of a Dask scheduler; `overrides` as
+    in `run`.
+    """
+    from lab.sweeps.calibrate import calibrate as calibrated
+
+    return calibrated(preset, target, vary, dotted(overrides, repeats), out, quiet=quiet, cluster=cluster)
+
+
+def open(path: Path | str, *, sound: bool = False) -> "Recording":
+    """Open the recording in a run's folder, or its file, for reading: `series`, `frames`, `labelled()`.
+
+    sound: leave out the rows from the first damaged one on.
+    """
+    from lab.recording import open_recording
+
+    return open_recording(path, sound=sound)
+
+
+def presets(word: str = "") -> dict[str, str]:
+    """The titles of the shipped presets by name; of those alone whose name begins with `word`, if it is given."""
+    from lab.preset.find import names
+
+    return {name: title for name, title in names().items() if name.startswith(word)}
+
+
+def explain(preset: str, **overrides: object) -> str:
+    """What a preset simulates, by which models, and what it will cost; `overrides` as in `run`."""
+    from lab.preset.find import load
+    from lab.report.explain import explain as explained
+
+    return explained(load(preset, dotted(overrides)))
+
+
+def render(
+    path: Path | str,
+    out: Path | str | None = None,
+    *,
+    png: bool = False,
+    world: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    **look: object,
+) -> Path:
+    """Paint the video of a recording again and return its path; `look` are keys of [video], such as colour="layer".
+
+    out: an .mp4, .gif or .webp file; with `png` a folder of single pictures. world: one of the repeats, from 0.
+    """
+    from lab.paint.video import render_recording
+
+    return render_recording(path, out, png=png, world=world, progress=progress, **look)
+
+
+def view(
+    preset: str | None = None,
+    out: Path | str | None = None,
+    *,
+    size: tuple[int, int] = (1280, 720),
+    **overrides: object,
+) -> Path | None:
+    """Run a preset live in a window and steer it; returns the folder of what was kept. Without one, choose there."""
+    from lab.view.windows import open_window
+
+    return open_window(preset, dotted(overrides), size, None if out is None else Path(out), "auto")
