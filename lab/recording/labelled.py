@@ -25,7 +25,7 @@ def labelled(recording, frames: slice | None = None) -> "xarray.Dataset":
         if quantity.components:
             coordinates[quantity.dimension] = list(quantity.components)
     for owner, names in recording.names.items():
-        if any(owner in values.dims for values in found.values()):
+        if owner not in found and any(owner in values.dims for values in found.values()):
             coordinates[owner] = names
     coordinates["world"] = np.arange(recording.worlds)
     about = {"preset": recording.name, "created": recording.created, "status": recording.status}

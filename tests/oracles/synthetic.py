@@ -58,8 +58,8 @@ def sample(time: float, worlds: int = 1, **values: object) -> dict:
     return {**_zeros(series_of(False, GRAINS), worlds), "time": time, **values}
 
 
-def _zeros(quantities: tuple, worlds: int, count: int = 0) -> dict:
-    rows = rows_of(quantities, {"world": worlds, "grain": count, "part": 0})
+def _zeros(quantities: tuple, worlds: int, count: int = 0, parts: int = 0) -> dict:
+    rows = rows_of(quantities, {"world": worlds, "grain": count, "part": parts})
     return {name: np.zeros(shape) for name, (shape, _) in rows.items()}
 
 
@@ -69,8 +69,9 @@ def of_a_ship(worlds: int = 1, **values: object) -> dict:
 
 
 def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
-    """A picture frame without parts; quantities that are not given are zero."""
-    return {**_zeros(frames_of(False, GRAINS), worlds, count), "time": time, **values}
+    """A picture frame without parts, or with those whose places `part` gives; what is not given is zero."""
+    parts = np.shape(values["part"])[1] if "part" in values else 0
+    return {**_zeros(frames_of(False, GRAINS), worlds, count, parts), "time": time, **values}
 
 
 def record(

@@ -114,7 +114,7 @@ def assert_whole(folder) -> int:
         (lambda r: r.frames["pose"]["y"], f"frames/pose has no [y]; it is {FRAMES} × 3."),
         (
             lambda r: r.frames["force"],
-            'no "force" in its frames, but time, pose, part, position, velocity, angle, spin; ',
+            'no "force" in its frames, but time, pose, part, part_turn, position, velocity, angle, spin; ',
         ),
         (lambda r: r.frames["waves"][:, 0], "`cargolab view` records it, of a ship in waves."),
         (lambda r: r.frames["kinetic"][:, 0], "it is in the series (record.series_rate)."),

@@ -107,7 +107,7 @@ def whole_series_vast(file):
 
 def whole_frames_vast(file):
     for name in list(file["frames"]):
-        vast(f"frames/{name}", chunks=None if name == "part" else 1)(file)
+        vast(f"frames/{name}", chunks=None if name in ("part", "part_turn") else 1)(file)
 
 
 def squeezed(file, length=5_000_000):
