@@ -138,8 +138,8 @@ def _sized(preset: Preset, shapes: Shapes, random: list[np.random.Generator]) ->
 
 
 def _plates(preset: Preset) -> list[np.ndarray]:
-    """The tank's parts as polylines (m, 2) in m, in their rest position."""
-    return [np.array(part.points) for part in preset.parts.values()]
+    """The parts in the grains' tank as polylines (m, 2) in m, in their rest position; a body's ends where it begins."""
+    return [np.array(part.line) for part in preset.parts.values() if part.tank is None]
 
 
 def _kinds(preset: Preset, shape: tuple[int, int]) -> dict:

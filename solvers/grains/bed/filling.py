@@ -159,8 +159,14 @@ def clear_of_walls(
     fixed: np.ndarray = NONE_FIXED,
     plates: Sequence[np.ndarray] = (),
 ) -> np.ndarray:
-    """Which sites (n, 2) lie inside the outline, at least `reach` (m) from it, from plates and from fixed grains."""
+    """Which sites (n, 2) lie inside the outline, at least `reach` (m) from it, from plates and from fixed grains.
+
+    A plate that ends where it begins is a body: none lie in it.
+    """
     clear = _inside(sites, outline)
+    for line in plates:
+        if np.array_equal(line[0], line[-1]):
+            clear &= ~_inside(sites, line)
     edges = [(a, b) for line in (np.vstack([outline, outline[:1]]), *plates) for a, b in pairwise(line)]
     for a, b in edges:
         edge = b - a

@@ -5,7 +5,16 @@ from math import pi
 import numpy as np
 import pytest
 
-from solvers.grains.bed.filling import DoesNotFit, _inside, count_for_depth, headroom, levelled, radii, start_positions
+from solvers.grains.bed.filling import (
+    DoesNotFit,
+    _inside,
+    count_for_depth,
+    headroom,
+    lattice,
+    levelled,
+    radii,
+    start_positions,
+)
 from solvers.grains.bed.sizes import Sizes
 from solvers.motion import Sway
 from solvers.simulation import Simulation
@@ -238,3 +247,12 @@ def test_points_inside_an_outline_are_those_that_matplotlib_finds_either_way_rou
         found = _inside(points, way)
         assert found.any() and not found.all()
         assert (found == Path(way).contains_points(points)).all()
+
+
+def test_no_grain_starts_in_a_body():
+    """A part that ends where it begins is solid: sites keep a radius off it, and none lie in it."""
+    outline = np.array([[-0.05, 0.0], [0.05, 0.0], [0.05, 0.1], [-0.05, 0.1]])
+    body = np.array([[-0.02, 0.02], [0.02, 0.02], [0.02, 0.06], [-0.02, 0.06], [-0.02, 0.02]])
+    sites = lattice(1e-3, outline, plates=[body])
+    off = np.maximum(np.abs(sites[:, 0]) - 0.02, np.abs(sites[:, 1] - 0.04) - 0.02)
+    assert off.min() >= 1e-3 * (1.0 - 1e-9) and len(sites) > 1000
