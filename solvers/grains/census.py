@@ -94,7 +94,8 @@ class Census:
                     sums[MOMENT + a] += m * g.place[a][w, i]
                 velocity = [g.now[a][w, i] for a in ti.static(range(g.axes))]
                 sums[KINETIC] += 0.5 * m * dot(velocity, velocity)
-                sums[ROTATIONAL] += 0.5 * j * g.spin_now[w, i] * g.spin_now[w, i]
+                for k in ti.static(range(g.turns)):
+                    sums[ROTATIONAL] += 0.5 * j * g.spin_now[k][w, i] * g.spin_now[k][w, i]
         for k in ti.static(range(self.numbers)):
             self.sums[k][w, chunk] = sums[k]
 

@@ -1,5 +1,7 @@
 """Contact forces of discs: kinematics of the listed contacts, and the forces of the scene's laws."""
 
+from itertools import chain
+
 import taichi as ti
 
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
@@ -9,7 +11,7 @@ from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.machine.wide import minus
 from solvers.space import tangent
-from solvers.space.axes import dot, named
+from solvers.space.axes import dot, named, named_turns
 from solvers.space.extremes import greater
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
@@ -42,7 +44,8 @@ class Contacts:
         self.lining = load.pieces - 1  # the piece of the fixed grains, if there are any
         # Forces (N) along the axes of a block of pairs, and torques (N m) on the first and second grains. They are
         # never read: writing them to adjacent memory is what makes the compiler vectorise the block.
-        names = (*named("force", grains.axes), "turn_i", "turn_j")
+        turns = (named_turns(f"turn_{grain}", grains.axes) for grain in "ij")
+        names = *named("force", grains.axes), *chain(*turns)
         rows = Axis("unit", GIVEN_APART * units.count), lists.pairs.lane
         self.given = arrays.under("given").vectors(rows, *names, kept=False)
 
@@ -60,41 +63,45 @@ class Contacts:
         touch within the kick come out with zero force and memory. Gathering and scattering of grains stays scalar.
         """
         load = self.nothing()
+        turns = ti.static(range(g.turns))
         for block in range(pairs.blocks(u)):
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
             normal, distance, approach = self.geometry(g, i, j, reach, pairs.lanes)
             velocity = self.differences(g.now, i, j, pairs.lanes)
-            spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
+            spin_i = [gathered(field, i, pairs.lanes) for field in ti.static(g.spin_now)]
+            spin_j = [gathered(field, j, pairs.lanes) for field in ti.static(g.spin_now)]
             lever_i = share * (reach + approach) - approach  # a gap, too, is shared, whichever grain is listed first
             lever_j = distance - lever_i
             rate = minus(dot(velocity, normal))
-            slip = tangent.slip(velocity, normal, lever_i * spin_i + lever_j * spin_j)
-            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, spin_i - spin_j, dt)
+            surfaces = [lever_i * spin_i[k] + lever_j * spin_j[k] for k in turns]
+            slip, turning = tangent.slip(velocity, normal, surfaces), [spin_i[k] - spin_j[k] for k in turns]
+            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, turning, None, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
-            force = tangent.force(normal, fn, ft)
-            turn_i, turn_j = tangent.torque(lever_i, ft, roll), tangent.torque(lever_j, ft, minus(roll))
-            self.push_both(g, pairs, u, block, i, force, turn_i, turn_j)
+            force, arm, back = tangent.force(normal, fn, ft), tangent.arm(normal, ft), [minus(roll[k]) for k in turns]
+            turn_i, turn_j = tangent.torque(lever_i, arm, roll), tangent.torque(lever_j, arm, back)
+            self.push_both(g, pairs, u, block, i, force, [turn_i, turn_j])
             if ti.static(self.lined):
                 load += self.on_lining(g, pairs, u, i, j, force, turn_i)
         if ti.static(self.lined):
             self.load.book(u, self.lining, load, dt)
 
     @ti.func
-    def push_both(self, g: ti.template(), pairs: ti.template(), u, block, i, force: ti.template(), turn_i, turn_j):
-        """Apply forces (N) to grains i, the reactions to their mates, and torques (N m) to both."""
+    def push_both(self, g: ti.template(), pairs: ti.template(), u, block, i, force: ti.template(), turn):
+        """Apply forces (N) to grains i, the reactions to their mates, and the two torques (N m) of `turn` to both."""
         if ti.static(not self.units.single and not pairs.wide):
             at = GIVEN_APART * u
             for a in ti.static(range(g.axes)):
                 self.given[a][at] = force[a]
-            self.given[g.axes][at], self.given[g.axes + 1][at] = turn_i, turn_j
+            for n in ti.static(range(g.turns)):
+                self.given[g.axes + n][at], self.given[g.axes + g.turns + n][at] = turn[0][n], turn[1][n]
         # Read as a whole, before the loop: read lane by lane, Taichi ends the process where vectors are not real.
         target = pairs.target[u, block] if ti.static(not self.units.single) else i
         for k in ti.static(halves_in_turn(pairs.lanes)):
-            g.push(0, i[k], [force[a][k] for a in ti.static(range(g.axes))], turn_i[k])
+            g.push(0, i[k], [one[k] for one in ti.static(force)], [one[k] for one in ti.static(turn[0])])
             if ti.static(not self.units.single):
-                g.push(0, target[k], [-force[a][k] for a in ti.static(range(g.axes))], turn_j[k])
+                g.push(0, target[k], [-one[k] for one in ti.static(force)], [one[k] for one in ti.static(turn[1])])
 
     @ti.func
     def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, force: ti.template(), turn):
@@ -104,13 +111,16 @@ class Contacts:
         off, on = ti.cast(0.0, g.real), ti.cast(-1.0, g.real)
         fixed = ti.Vector([ti.select(j[k] - start >= g.mobile, on, off) for k in lanes])
         place = [ti.Vector([ti.cast(g.place[a][0, i[k]], g.real) for k in lanes]) for a in ti.static(range(g.axes))]
-        moment = fixed * (tangent.moment(place, force) + turn)
-        return ti.Vector([(fixed * force[a]).sum() for a in ti.static(range(g.axes))] + [moment.sum()])
+        about = tangent.moment(place, force)
+        moment = [fixed * (about[k] + turn[k]) for k in ti.static(range(g.turns))]
+        along = [(fixed * force[a]).sum() for a in ti.static(range(g.axes))]
+        return ti.Vector(along + [moment[k].sum() for k in ti.static(range(g.turns))])
 
     @ti.func
     def nothing(self):
         """A zero load."""
-        return ti.Vector([ti.cast(0.0, self.grains.real) for _ in ti.static(range(self.grains.axes + 1))])
+        entries = ti.static(range(self.grains.axes + self.grains.turns))
+        return ti.Vector([ti.cast(0.0, self.grains.real) for _ in entries])
 
     @ti.func
     def push_off(self, g: ti.template(), w, i, u, feature, force: ti.template(), torque, load: ti.template()):
@@ -120,8 +130,9 @@ class Contacts:
         """
         g.push(w, i, force, torque)
         place = [ti.cast(g.place[a][w, i], g.real) for a in ti.static(range(g.axes))]
-        moment = tangent.moment(place, force) + torque
-        back = ti.Vector([-force[a] for a in ti.static(range(g.axes))] + [-moment])
+        about = tangent.moment(place, force)
+        moment = [about[k] + torque[k] for k in ti.static(range(g.turns))]
+        back = ti.Vector([-one for one in ti.static(force)] + [-one for one in ti.static(moment)])
         if ti.static(self.walls.pieces == 1):
             load += back
         elif is_some(force):
@@ -166,6 +177,7 @@ class Contacts:
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
         """Forces of the walls on the grains g."""
         w, load = self.units.world(u), self.nothing()
+        turns = ti.static(range(g.turns))
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
@@ -180,15 +192,18 @@ class Contacts:
                 feature, shift, *[g.place[a][w, i] - lever * normal[a] for a in ti.static(range(g.axes))]
             )
             velocity = [g.now[a][w, i] - moved[a] for a in ti.static(range(g.axes))]
-            spin = g.spin_now[w, i]
-            turning = spin - self.walls.rate(feature, shift)
-            rate, slip = -dot(velocity, normal), tangent.slip(velocity, normal, lever * spin)
-            met = [ti.Vector([value]) for value in ti.static([approach, rate, slip, turning])]
-            fn, ft, roll = self.laws.forces(WALL, contacts, u, p, *met, dt)
+            rate = -dot(velocity, normal)
+            spin = [field[w, i] for field in ti.static(g.spin_now)]
+            slip = tangent.slip(velocity, normal, [lever * spin[k] for k in turns])
+            slips = [ti.Vector([slip[k]]) for k in turns]
+            turning = [ti.Vector([spin[k] - self.walls.rate(feature, shift)]) for k in turns]
+            met = ti.Vector([approach]), ti.Vector([rate])
+            fn, ft, roll = self.laws.forces(WALL, contacts, u, p, *met, slips, turning, None, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
-            force = tangent.force(normal, fn[0], ft[0])
-            self.push_off(g, w, i, u, feature, force, tangent.torque(lever, ft[0], roll[0]), load)
+            shear = [ft[k][0] for k in turns]
+            torque = tangent.torque(lever, tangent.arm(normal, shear), [roll[k][0] for k in turns])
+            self.push_off(g, w, i, u, feature, tangent.force(normal, fn[0], shear), torque, load)
         self.book_walls(u, load, dt)
 
     @ti.func

@@ -14,7 +14,7 @@ class Mover:
 
     def __init__(self, arrays: State, units: Units, grains: GrainState, integrator, rotating: bool):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
-        names = (f"extra.{k}" for k in range(integrator.extra * (grains.axes + 1)))
+        names = (f"extra.{k}" for k in range(integrator.extra * (grains.axes + grains.turns)))
         self.extra = arrays.under("mover").reals(grains.each, *names)
 
     def rest(self) -> None:
@@ -36,22 +36,25 @@ class Mover:
         zero = ti.cast(0.0, g.real)
         total = zero
         for i in range(self.units.first(u), self.units.end(u)):
-            force, torque = [g.force[a][w, i] for a in ti.static(range(g.axes))], g.torque[w, i]
+            force = [g.force[a][w, i] for a in ti.static(range(g.axes))]
+            torque = [g.torque[k][w, i] for k in ti.static(range(g.turns))]
             b, spin_up = self.felt(g, w, i, body)
             if ti.static(g.may_leave):
                 for a in ti.static(range(g.axes)):
                     b[a] = b[a] * g.present[w, i]
-                spin_up = spin_up * g.present[w, i]
+                for k in ti.static(range(g.turns)):
+                    spin_up[k] = spin_up[k] * g.present[w, i]
             acceleration = [force[a] * g.inverse_mass[w, i] + b[a] for a in ti.static(range(g.axes))]
-            turn = torque * g.inverse_inertia[w, i] + spin_up
+            turn = [torque[k] * g.inverse_inertia[w, i] + spin_up[k] for k in ti.static(range(g.turns))]
             square = self.integrator.step(g, self.extra, w, i, acceleration, turn, kick, dt)
             if ti.static(g.shaped):
                 # No point of an outline is faster: (v + ω R)² is at most twice v² + ω² R².
-                around = g.spin[w, i] * g.reach[w, i]
+                around = g.spin[0][w, i] * g.reach[w, i]
                 square = 2.0 * (square + around * around)
             for a in ti.static(range(g.axes)):
                 g.force[a][w, i] = 0.0
-            g.torque[w, i] = 0.0
+            for k in ti.static(range(g.turns)):
+                g.torque[k][w, i] = 0.0
             fourth = square * square
             eighth = fourth * fourth
             total += eighth * eighth
@@ -61,18 +64,19 @@ class Mover:
 
     @ti.func
     def felt(self, g: ti.template(), w, i, body: ti.template()):
-        """What grain i feels of the tank's motion: accelerations (m/s²) along the axes, and that of its spin (1/s²).
+        """What grain i feels of the tank's motion: accelerations (m/s²) along the axes, and of its spin (1/s²), lists.
 
         In the frame of `body` = (b, φ̇, φ̈) it feels b − φ̈ × r + φ̇² r − 2 φ̇ × u, and its spin changes by −φ̈. b has an
         entry an axis; the tank turns in the plane alone, about x.
         """
-        b, spin_up = [body[a] for a in ti.static(range(g.axes))], ti.cast(0.0, g.real)
+        b = [body[a] for a in ti.static(range(g.axes))]
+        spin_up = [ti.cast(0.0, g.real) for _ in ti.static(range(g.turns))]
         if ti.static(self.rotating):
             y, z = ti.cast(g.place[0][w, i], g.real), ti.cast(g.place[1][w, i], g.real)
             rate, rise = body[g.axes], body[g.axes + 1]
             b[0] += rise * z + rate * (rate * y + 2.0 * g.now[1][w, i])
             b[1] += -rise * y + rate * (rate * z - 2.0 * g.now[0][w, i])
-            spin_up = -rise
+            spin_up[0] = -rise
         return b, spin_up
 
     @ti.func
@@ -80,5 +84,5 @@ class Mover:
         """Have orientations follow angles, in a loop of its own: the compiler turns it into SIMD instructions."""
         w = self.units.world(u)
         for i in range(self.units.first(u), self.units.end(u)):
-            turn = towards(g.angle[w, i])
+            turn = towards(g.angle[0][w, i])
             g.turn_y[w, i], g.turn_z[w, i] = turn[0], turn[1]

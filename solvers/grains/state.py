@@ -3,8 +3,8 @@
 import numpy as np
 import taichi as ti
 
-from solvers.machine.state import Axis, State
-from solvers.space.axes import dot, named
+from solvers.machine.state import Axis, Scope, State
+from solvers.space.axes import dot, named, named_turns, turns
 
 FAR = 1e3  # m
 
@@ -13,8 +13,8 @@ FAR = 1e3  # m
 class GrainState:
     """Arrays (W, n + k + ghosts), SI, in the tank's frame: n that move, k fixed ones of rough walls, far-off points.
 
-    `place` (m), `velocity` and `now` (m/s) and `force` (N) are lists with an array for each of the `axes`; angles,
-    spins and torques are those of the plane, about x.
+    `place` (m), `velocity` and `now` (m/s) and `force` (N) are lists with an array for each of the `axes`, `angle`,
+    `spin` and `spin_now` (rad, rad/s) and `torque` (N m) for each of the `turns`, the axes about which grains turn.
 
     A disc has the mass and inertia of the sphere it stands for. `velocity` and `spin` are what the integrator keeps;
     `now` and `spin_now` are their values at the positions' own time, for forces that depend on velocity. Grains that
@@ -36,8 +36,8 @@ class GrainState:
         kind: np.ndarray | None = None,
         spread: np.ndarray | float = 1.0,
     ):
-        self.axes, (self.worlds, self.mobile) = axes, radius.shape
-        self.fixed = fixed
+        self.axes, self.turns, self.fixed = axes, turns(axes), fixed
+        self.worlds, self.mobile = radius.shape
         self.count = self.mobile + len(fixed)
         self.ghosts, self.may_leave = ghosts, may_leave
         self.real, self.exact = arrays.real, arrays.exact
@@ -46,10 +46,10 @@ class GrainState:
         own, each = arrays.under("grains"), "world grain"
         self.each = Axis("world", self.worlds), Axis("grain", self.stride)
         self.place = own.reals(self.each, *named("place", axes), kind=own.place)
-        (self.angle,) = own.reals(self.each, "angle")
-        *self.velocity, self.spin = own.reals(self.each, *named("velocity", axes), "spin")
-        *self.now, self.spin_now = own.reals(self.each, *named("now", axes), "spin_now")
-        *self.force, self.torque = own.reals(self.each, *named("force", axes), "torque")
+        self.angle = own.reals(self.each, *named_turns("angle", axes))
+        self.velocity, self.spin = self._both(own, "velocity", "spin")
+        self.now, self.spin_now = self._both(own, "now", "spin_now")
+        self.force, self.torque = self._both(own, "force", "torque")
         self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
         self.radius = own.holding("radius", self._filled(radius, fixed[:, -1], 0.0), each, kept=True)
         self.reach = self.radius
@@ -63,6 +63,11 @@ class GrainState:
             self.present = own.holding("present", np.ones((self.worlds, self.stride)), each, kept=True)
             self.spilled = own.holding("spilled", np.zeros((self.worlds, self.stride)), each, kept=True)
 
+    def _both(self, own: Scope, along: str, about: str) -> tuple[list[ti.Field], list[ti.Field]]:
+        """Arrays of a vector and of what there is of rotation with it."""
+        fields = own.reals(self.each, *named(along, self.axes), *named_turns(about, self.axes))
+        return fields[: self.axes], fields[self.axes :]
+
     def _filled(self, values: np.ndarray, fixed: np.ndarray | float, ghost: float) -> np.ndarray:
         """Values (W, n) of the grains that move, with those of the fixed ones and the ghosts after them."""
         whole = np.full((self.worlds, self.count + self.ghosts), ghost)
@@ -75,36 +80,39 @@ class GrainState:
         for axis, field in enumerate(self.place):
             values = self._filled(position[..., axis], self.fixed[:, axis], FAR)
             field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
-        self.angle.fill(0.0)
+        self.count_turns_anew()
         if self.may_leave:
             self.present.fill(1.0)
             self.spilled.fill(0.0)
-        self.launch(np.zeros_like(position), np.zeros(position.shape[:2]))
+        self.launch(np.zeros_like(position), np.zeros((*position.shape[:2], self.turns)))
 
     def count_turns_anew(self) -> None:
         """Count the angles from here on: of discs, one is like another."""
-        self.angle.fill(0.0)
+        for field in self.angle:
+            field.fill(0.0)
 
     def launch(self, velocity: np.ndarray, spin: np.ndarray) -> None:
-        """Set the velocities (W, n, axes) m/s and spins (W, n) rad/s."""
-        kept, now = (*self.velocity, self.spin), (*self.now, self.spin_now)
-        for *fields, values in zip(kept, now, (*np.moveaxis(velocity, -1, 0), spin), strict=True):
+        """Set the velocities (W, n, axes) m/s and spins (W, n, turns) rad/s, or (W, n) where there is one turn."""
+        kept, now = (*self.velocity, *self.spin), (*self.now, *self.spin_now)
+        rates = np.concatenate([velocity, spin.reshape(*velocity.shape[:2], self.turns)], axis=-1)
+        for *fields, values in zip(kept, now, np.moveaxis(rates, -1, 0), strict=True):
             whole = self._filled(values, 0.0, 0.0)
             for field in fields:
                 field.from_numpy(whole.astype(np.float32) if field.dtype == ti.f32 else whole)
-        for field in (*self.force, self.torque):
+        for field in (*self.force, *self.torque):
             field.fill(0.0)
 
     def read(self) -> dict[str, np.ndarray]:
-        """Positions (W, n, axes), velocities (W, n, axes), angles (W, n) and spins (W, n) at the present time.
+        """Positions and velocities (W, n, axes), and as `launch` has spins angles and spins, at the present time.
 
         A grain that has left the scene has no position: NaN.
         """
-        position, velocity = (
+        position, velocity, angle, spin = (
             np.stack([field.to_numpy()[:, : self.mobile] for field in fields], axis=-1)
-            for fields in (self.place, self.now)
+            for fields in (self.place, self.now, self.angle, self.spin_now)
         )
-        angle, spin = (field.to_numpy()[:, : self.mobile] for field in (self.angle, self.spin_now))
+        if self.turns == 1:
+            angle, spin = angle[..., 0], spin[..., 0]
         if self.may_leave:
             position[self.present.to_numpy()[:, : self.mobile] == 0.0] = np.nan
         return {"position": position, "velocity": velocity, "angle": angle, "spin": spin}
@@ -116,10 +124,11 @@ class GrainState:
 
     @ti.func
     def push(self, w, i, force: ti.template(), torque):
-        """Add a force (N) and a torque (N m) on grain i. Written out, since Taichi takes `+=` on a field as atomic."""
+        """Add a force (N) and torque (N m), lists, on grain i. Written out: Taichi takes `+=` on a field as atomic."""
         for a in ti.static(range(self.axes)):
             self.force[a][w, i] = self.force[a][w, i] + force[a]
-        self.torque[w, i] = self.torque[w, i] + torque
+        for k in ti.static(range(self.turns)):
+            self.torque[k][w, i] = self.torque[k][w, i] + torque[k]
 
     @ti.func
     def fastest(self, w):
@@ -143,4 +152,5 @@ class GrainState:
             self.place[a][w, i] = FAR
             self.velocity[a][w, i], self.now[a][w, i] = 0.0, 0.0
         self.place[0][w, i] = 2.0 * FAR + 10.0 * i
-        self.spin[w, i], self.spin_now[w, i] = 0.0, 0.0
+        for k in ti.static(range(self.turns)):
+            self.spin[k][w, i], self.spin_now[k][w, i] = 0.0, 0.0

@@ -31,6 +31,12 @@ def named_turns(what: str, axes: int) -> tuple[str, ...]:
 
 
 @ti.func
+def cross(a: ti.template(), b: ti.template()):
+    """Vector product of two vectors in space."""
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+@ti.func
 def dot(a: ti.template(), b: ti.template()):
     """Scalar product of two vectors, lists of components, summed in the order of the axes."""
     total = a[0] * b[0]

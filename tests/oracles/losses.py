@@ -23,13 +23,25 @@ class CountedLaws(ChosenLaws):
         (self.lost,) = arrays.reals((Axis("unit", APART * units.count),), "lost", kind=arrays.exact)
 
     @ti.func
-    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, slip, turning, dt):
+    def forces(
+        self,
+        kind: ti.template(),
+        contacts: ti.template(),
+        u,
+        block,
+        approach,
+        rate,
+        slip,
+        turning,
+        way: ti.template(),
+        dt,
+    ):
         before = self.sprung(kind, contacts, u, block)
         pressing = self.press(kind, contacts, u, block, approach, rate, dt)
         overlap = greater(approach, 0.0)
-        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
+        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, way, dt)
         elastic = contacts.stiffness[u, block] * overlap * ti.sqrt(overlap)
-        work = ((pressing - elastic) * rate - shearing * slip).sum() * dt
+        work = ((pressing - elastic) * rate - shearing[0] * slip[0]).sum() * dt
         self.lost[APART * u] = self.lost[APART * u] + work - self.sprung(kind, contacts, u, block) + before
         return pressing, shearing, torque
 
@@ -38,5 +50,5 @@ class CountedLaws(ChosenLaws):
         """Energy (J) S²/(2 k_t) of a block's shear springs, as they were left last."""
         c, root = self.coefficients(1, u, kind, contacts, block), contacts.root_before[u, block]
         spring = c[1] * contacts.stiffness[u, block] * root
-        held = contacts.stretched[u, block]
+        held = contacts.stretched[0][u, block]
         return (0.5 * held * held / greater(spring, SOFTEST)).sum()

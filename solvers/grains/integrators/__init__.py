@@ -1,7 +1,7 @@
 """Integrators of the grains' motion, one file each; the registry has their names in presets.
 
-An integrator is a class with `extra`, the number of fields that it keeps per coordinate of a grain (positions along the
-axes, and the angle) beyond the coordinate and its rate, and a Taichi function `step` that moves one grain under the
+An integrator is a class with `extra`, the number of fields that it keeps per coordinate of a grain (places along the
+axes, then angles) beyond the coordinate and its rate, and a Taichi function `step` that moves one grain under the
 forces at its present position. Relative to Verlet it is stable with steps `reach` times as long and dampers `damping`
 times as strong, and `bearing` times as many derived steps may be forced; `cargolab bench stability` measures all three.
 Springs with contact history use its `ahead` and `stiffer`, see `solvers.grains.laws.history`. `late` tells how far the

@@ -30,25 +30,29 @@ class Gear:
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):
-        """Correct grain i by its acceleration (m/s², rad/s²) and predict it dt (s) later."""
+        """Correct grain i by its linear (m/s²) and angular acceleration (rad/s²), lists; predict it dt (s) later."""
         half, first = 0.5 * dt * dt, kick < dt
         way = [
             self.along(extra, a, w, i, g.velocity[a][w, i] * dt, half * acceleration[a], first)
             for a in ti.static(range(g.axes))
         ]
-        turned = self.along(extra, g.axes, w, i, g.spin[w, i] * dt, half * turn, first)
+        turned = [
+            self.along(extra, g.axes + k, w, i, g.spin[k][w, i] * dt, half * turn[k], first)
+            for k in ti.static(range(g.turns))
+        ]
         v = [way[a][1] / dt for a in ti.static(range(g.axes))]
         for a in ti.static(range(g.axes)):
             g.place[a][w, i] = g.place[a][w, i] + way[a][0]
             g.velocity[a][w, i], g.now[a][w, i] = v[a], v[a]
-        spin = turned[1] / dt
-        g.angle[w, i] = g.angle[w, i] + turned[0]
-        g.spin[w, i], g.spin_now[w, i] = spin, spin
+        for k in ti.static(range(g.turns)):
+            spin = turned[k][1] / dt
+            g.angle[k][w, i] = g.angle[k][w, i] + turned[k][0]
+            g.spin[k][w, i], g.spin_now[k][w, i] = spin, spin
         return dot(v, v)
 
     @ti.func
     def along(self, extra: ti.template(), axis: ti.template(), w, i, q1, bend, first):
-        """One coordinate, the angle after the axes: its change and the next q_1, from q_1 and q_2 = Δt²/2 r̈ now."""
+        """One coordinate, the angles after the axes: its change and the next q_1, from q_1 and q_2 = Δt²/2 r̈ now."""
         k = ti.static(axis * DERIVATIVES)
         q2, q3, q4, q5 = extra[k][w, i], extra[k + 1][w, i], extra[k + 2][w, i], extra[k + 3][w, i]
         miss = bend - q2

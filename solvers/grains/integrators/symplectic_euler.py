@@ -22,12 +22,13 @@ class SymplecticEuler:
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):
-        """Move grain i by its acceleration (m/s²) and angular acceleration (rad/s²) over dt (s)."""
+        """Move grain i by its linear (m/s²) and angular acceleration (rad/s²), lists, over dt (s)."""
         v = [g.velocity[a][w, i] + dt * acceleration[a] for a in ti.static(range(g.axes))]
-        spin = g.spin[w, i] + dt * turn
+        spin = [g.spin[k][w, i] + dt * turn[k] for k in ti.static(range(g.turns))]
         for a in ti.static(range(g.axes)):
             g.velocity[a][w, i], g.now[a][w, i] = v[a], v[a]
             g.place[a][w, i] = g.place[a][w, i] + dt * v[a]
-        g.spin[w, i], g.spin_now[w, i] = spin, spin
-        g.angle[w, i] = g.angle[w, i] + dt * spin
+        for k in ti.static(range(g.turns)):
+            g.spin[k][w, i], g.spin_now[k][w, i] = spin[k], spin[k]
+            g.angle[k][w, i] = g.angle[k][w, i] + dt * spin[k]
         return dot(v, v)

@@ -23,14 +23,15 @@ class Verlet:
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):
-        """Move grain i by its acceleration (m/s²) and angular acceleration (rad/s²) over dt (s)."""
+        """Move grain i by its linear (m/s²) and angular acceleration (rad/s²), lists, over dt (s)."""
         v = [g.velocity[a][w, i] + kick * acceleration[a] for a in ti.static(range(g.axes))]
-        spin = g.spin[w, i] + kick * turn
+        spin = [g.spin[k][w, i] + kick * turn[k] for k in ti.static(range(g.turns))]
         for a in ti.static(range(g.axes)):
             g.velocity[a][w, i] = v[a]
             g.place[a][w, i] = g.place[a][w, i] + dt * v[a]
             g.now[a][w, i] = v[a] + 0.5 * dt * acceleration[a]
-        g.spin[w, i] = spin
-        g.angle[w, i] = g.angle[w, i] + dt * spin
-        g.spin_now[w, i] = spin + 0.5 * dt * turn
+        for k in ti.static(range(g.turns)):
+            g.spin[k][w, i] = spin[k]
+            g.angle[k][w, i] = g.angle[k][w, i] + dt * spin[k]
+            g.spin_now[k][w, i] = spin[k] + 0.5 * dt * turn[k]
         return dot(v, v)

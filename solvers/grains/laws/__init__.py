@@ -4,12 +4,14 @@ A law is a class with
 - `coefficients`, the numbers it needs of an interface between two materials, and `limits`, the longest steps at which
   it is resolved; a normal law also has `deepest`, the largest overlap of an impact without losses;
 - `constants` and `memory`, names of what it keeps for each listed contact, unique among the kinds of laws; `prepare`
-  computes the constants of a new contact;
+  computes the constants of a new contact; `tangents` are those of `memory` that are vectors along or about the contact;
 - `force` (a rolling law: `torque`, a cohesion law: `pull`) and `energy`, Taichi functions. They take a block of
   contacts at once, as vectors of lanes, so only element-wise arithmetic is allowed; a coefficient may be a number or a
-  vector of lanes. A contact with a gap must come out with no memory, and with no force where it does not begin within
-  the kick (`kick`); under a cohesion law, one whose gap is beyond the law's `range`. A cohesion law lists in `needs`
-  the keys that a material must have.
+  vector of lanes. Slip, turning, the force or torque against them and `tangents` are lists, with an entry per axis
+  about which grains turn (`solvers.space.tangent`). `way` is how the contact has turned in the step, by which a vector
+  in memory has to be turned in space; None in the plane. A contact with a gap must come out with no memory, and with no
+  force where it does not begin within the kick (`kick`); under a cohesion law, one whose gap is beyond the law's
+  `range`. A cohesion law lists in `needs` the keys that a material must have.
 Only the laws that a scene uses are compiled.
 """
 

@@ -1,12 +1,16 @@
 """The contact laws of a scene, with their coefficients in every world."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import taichi as ti
 
 from solvers.grains.integrators.verlet import Verlet
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.machine.wide import enter, entry
+from solvers.space.axes import named_turns, turns
 from solvers.space.extremes import greater
 
 PAIR, WALL = 0, 1  # rows of the interfaces if all grains are of one kind
@@ -38,6 +42,7 @@ class ChosenLaws:
         interfaces,
         kinds=1,
         integrator=Verlet,
+        axes=PLANE,
     ):
         self.units, self.kinds, self.damping = units, kinds, integrator.damping
         self.normal, self.tangential, self.rolling, self.cohesion = normal, tangential, rolling, cohesion
@@ -53,10 +58,21 @@ class ChosenLaws:
             for name, law in zip(names, laws, strict=True)
         ]
         self.constants = tuple(name for law in laws for name in law.constants)
-        self.memory = tuple(name for law in laws for name in law.memory)
         self.counts = tuple(len(law.constants) for law in laws)
-        # A torque changes sign if the first and the second grain are swapped; forces along n and t do not.
-        self.odd = [law is rolling for law in laws for _ in law.memory]
+        self.vectors = {name: named_turns(name, axes) for law in laws for name in getattr(law, "tangents", ())}
+        self.remembered = tuple(name for law in laws for name in law.memory)
+        kept = [(law, name, array) for law in laws for name in law.memory for array in self.vectors.get(name, (name,))]
+        self.memory = tuple(array for *_, array in kept)
+        # A vector changes its sign if the first and the second grain are swapped. In the plane the tangent does, too.
+        self.odd = [name in self.vectors and (law is rolling or turns(axes) > 1) for law, name, _ in kept]
+
+    def by_name(self, arrays: Sequence) -> dict[str, object]:
+        """The arrays of `memory` under the names by which laws know them: one, or the list of a vector's."""
+        left = iter(arrays)
+        return {
+            name: [next(left) for _ in self.vectors[name]] if name in self.vectors else next(left)
+            for name in self.remembered
+        }
 
     def learn(self, interfaces) -> None:
         """Take the coefficients of other interfaces; constants follow when the contact lists are next rebuilt."""
@@ -140,16 +156,28 @@ class ChosenLaws:
                 enter(contacts.constants[first + k], u, block, lane, values[k])
 
     @ti.func
-    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, slip, turning, dt):
+    def forces(
+        self,
+        kind: ti.template(),
+        contacts: ti.template(),
+        u,
+        block,
+        approach,
+        rate,
+        slip,
+        turning,
+        way: ti.template(),
+        dt,
+    ):
         """Normal and tangential forces (N) and rolling torques (N m) of a block of contacts; memory is updated.
 
         `approach` is the overlap in m (negative: a gap), its `rate` the closing speed and `slip` the tangential one in
-        m/s, `turning` ω_i − ω_j (ω_i at a wall) in rad/s. The torque acts on the first grain, and its opposite on the
-        second.
+        m/s, `turning` ω_i − ω_j (ω_i at a wall) in rad/s, `way` as the laws take it. The torque acts on the first
+        grain, and its opposite on the second.
         """
         pressing = self.press(kind, contacts, u, block, approach, rate, dt)
         overlap = greater(approach, 0.0)
-        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
+        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, way, dt)
         return pressing, shearing, torque
 
     @ti.func
@@ -160,12 +188,26 @@ class ChosenLaws:
         return self.normal.force(coefficients, contacts, u, block, approach, overlap, ti.sqrt(overlap), rate, dt)
 
     @ti.func
-    def rub(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, pressing, slip, turning, dt):
+    def rub(
+        self,
+        kind: ti.template(),
+        contacts: ti.template(),
+        u,
+        block,
+        overlap,
+        rate,
+        pressing,
+        slip,
+        turning,
+        way: ti.template(),
+        dt,
+    ):
         """Tangential forces (N) and rolling torques (N m) under normal forces `pressing` (N)."""
         tangential_c = self.coefficients(1, u, kind, contacts, block)
         rolling_c = self.coefficients(2, u, kind, contacts, block)
-        shearing = self.tangential.force(tangential_c, contacts, u, block, ti.sqrt(overlap), rate, pressing, slip, dt)
-        torque = self.rolling.torque(rolling_c, contacts, u, block, pressing, turning, dt)
+        root = ti.sqrt(overlap)
+        shearing = self.tangential.force(tangential_c, contacts, u, block, root, rate, pressing, slip, way, dt)
+        torque = self.rolling.torque(rolling_c, contacts, u, block, pressing, turning, way, dt)
         return shearing, torque
 
     @ti.func

@@ -6,7 +6,8 @@ from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus
-from solvers.space.extremes import greater, lesser, within
+from solvers.space.extremes import greater, lesser
+from solvers.space.tangent import capped
 
 TURNING = 1e-3  # rad/s, where the ramp ends: under the full torque a 3 mm grain creeps 5 mm an hour
 SMALLEST_TORQUE = 1e-30  # N m; keeps the division finite in contacts without normal force
@@ -27,7 +28,7 @@ class ConstantTorque:
 
     wide = True
     constants = ("rolling_radius", "rolling_limit")
-    memory = ("rolling_followed",)
+    memory = tangents = ("rolling_followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ_r]."""
@@ -43,15 +44,18 @@ class ConstantTorque:
         return ti.Vector([c[0] * radius, 0.4 * mass * radius * radius / dt])
 
     @ti.func
-    def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, dt):
+    def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, way: ti.template(), dt):
         """M (N m) of a block of contacts on their first grains; turning ω_i − ω_j in rad/s, F_n in N."""
         cap, limit = contacts.rolling_radius[w, block] * normal, contacts.rolling_limit[w, block]
         share = lesser(FOLLOWING * TURNING * limit / greater(cap, SMALLEST_TORQUE), 1.0)
         damping = cap * (1.0 / TURNING)
         at_once = lesser(damping, PROMPT * limit)
-        lag = lagging(damping - at_once, share, turning, contacts.rolling_followed[w, block], cap)
-        contacts.rolling_followed[w, block] = lag
-        return within(minus(lag) - at_once * turning, cap)
+        turns = ti.static(range(len(turning)))
+        before = [contacts.rolling_followed[k][w, block] for k in turns]
+        lag = lagging(damping - at_once, share, turning, before, cap)
+        for k in ti.static(turns):
+            contacts.rolling_followed[k][w, block] = lag[k]
+        return capped([minus(lag[k]) - at_once * turning[k] for k in turns], cap)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane):

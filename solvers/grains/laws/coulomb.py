@@ -5,8 +5,9 @@ import taichi as ti
 from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging, relieved
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
-from solvers.machine.wide import minus, size
-from solvers.space.extremes import greater, lesser, within
+from solvers.machine.wide import minus
+from solvers.space.extremes import greater, lesser
+from solvers.space.tangent import capped, length
 
 SLIP = 1e-6  # m/s, where the ramp ends: creep of 4 mm an hour under a load at the Coulomb cap
 SMALLEST_FORCE = 1e-30  # N; keeps the division finite in contacts without normal force
@@ -26,7 +27,7 @@ class Coulomb:
 
     wide = True
     constants = ("limit",)
-    memory = ("followed",)
+    memory = tangents = ("followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ]."""
@@ -42,17 +43,23 @@ class Coulomb:
         return ti.Vector([(2.0 / 7.0) * mass / dt])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+    def force(
+        self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, way: ti.template(), dt
+    ):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
         share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
         damping = cap * (1.0 / SLIP)
         at_once = lesser(damping, PROMPT * limit)
-        fast, before = at_once * slip, contacts.followed[w, block] * relieved(root, rate, dt)
-        room = greater(cap - size(fast), 0.0)
+        turns = ti.static(range(len(slip)))
+        kept = relieved(root, rate, dt)
+        fast = [at_once * slip[k] for k in turns]
+        before = [contacts.followed[k][w, block] * kept for k in turns]
+        room = greater(cap - length(fast), 0.0)
         lag = lagging(damping - at_once, share, slip, before, room)
-        contacts.followed[w, block] = lag
-        return within(minus(lag) - fast, cap)
+        for k in ti.static(turns):
+            contacts.followed[k][w, block] = lag[k]
+        return capped([minus(lag[k]) - fast[k] for k in turns], cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

@@ -8,7 +8,9 @@ from solvers.grains.laws.splitting import AT_ONCE, shear_limit, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
+from solvers.space.axes import dot
 from solvers.space.extremes import within
+from solvers.space.tangent import capped
 
 
 @ti.data_oriented
@@ -29,7 +31,7 @@ class CundallStrack:
 
     wide = True
     constants = ("shear_spring", "shear_dashpot")
-    memory = ("stretched", "sliding")
+    memory = tangents = ("stretched", "sliding")
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, k_t's coefficient, A in s]."""
@@ -55,20 +57,25 @@ class CundallStrack:
         return ti.Vector([spring + spring * within(stiffer, STIFFEST), dashpot])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+    def force(
+        self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, way: ti.template(), dt
+    ):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, spring = c[0] * normal, contacts.shear_spring[w, block]
-        begins = root * root < rate * dt
-        sliding = over_the_step(slip, contacts.sliding[w, block], self.integrator.ahead)
-        way = ti.select(begins, slip * (root * root / rate), sliding * dt)
-        held = within(contacts.stretched[w, block] + spring * way, cap)
-        contacts.stretched[w, block] = held
-        contacts.sliding[w, block] = ti.select(root > 0.0, sliding, 0.0 * sliding)
-        return within(minus(held) - contacts.shear_dashpot[w, block] * slip, cap)
+        turns = ti.static(range(len(slip)))
+        begins, since = root * root < rate * dt, root * root / rate
+        sliding = [over_the_step(slip[k], contacts.sliding[k][w, block], self.integrator.ahead) for k in turns]
+        gone = [ti.select(begins, slip[k] * since, sliding[k] * dt) for k in turns]
+        held = capped([contacts.stretched[k][w, block] + spring * gone[k] for k in turns], cap)
+        for k in ti.static(turns):
+            contacts.stretched[k][w, block] = held[k]
+            contacts.sliding[k][w, block] = ti.select(root > 0.0, sliding[k], 0.0 * sliding[k])
+        dashpot = contacts.shear_dashpot[w, block]
+        return capped([minus(held[k]) - dashpot * slip[k] for k in turns], cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
         spring = entry(contacts.shear_spring, w, block, lane)
-        held = entry(contacts.stretched, w, block, lane)
-        return 0.5 * held * held / spring
+        held = [entry(field, w, block, lane) for field in ti.static(contacts.stretched)]
+        return 0.5 * dot(held, held) / spring

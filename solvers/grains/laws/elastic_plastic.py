@@ -9,7 +9,8 @@ from solvers.grains.laws.splitting import AT_ONCE, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
-from solvers.space.extremes import within
+from solvers.space.axes import dot
+from solvers.space.tangent import capped
 
 
 @ti.data_oriented
@@ -30,7 +31,7 @@ class ElasticPlastic:
 
     wide = True
     constants = ("rolling_radius", "rolling_spring", "rolling_dashpot")
-    memory = ("wound",)
+    memory = tangents = ("wound",)
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ_r, k_r/(k⁴ m)^(1/5) R_eff², 2 η_r √(7/5)]."""
@@ -54,19 +55,21 @@ class ElasticPlastic:
         return ti.Vector([c[0] * radius, spring, ti.max(dashpot - led, 0.0)])
 
     @ti.func
-    def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, dt):
+    def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, way: ti.template(), dt):
         """M (N m) of a block of contacts on their first grains; turning ω_i − ω_j in rad/s, F_n in N."""
         cap = contacts.rolling_radius[w, block] * normal
-        wound = contacts.wound[w, block] + contacts.rolling_spring[w, block] * turning * dt
-        wound = within(wound, cap)
-        contacts.wound[w, block] = wound
-        return within(minus(wound) - contacts.rolling_dashpot[w, block] * turning, cap)
+        spring, dashpot = contacts.rolling_spring[w, block], contacts.rolling_dashpot[w, block]
+        turns = ti.static(range(len(turning)))
+        wound = capped([contacts.wound[k][w, block] + spring * turning[k] * dt for k in turns], cap)
+        for k in ti.static(turns):
+            contacts.wound[k][w, block] = wound[k]
+        return capped([minus(wound[k]) - dashpot * turning[k] for k in turns], cap)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane):
         """Elastic energy S²/(2 k_r) (J) of one contact; none without rolling friction."""
-        wound, spring = entry(contacts.wound, w, block, lane), entry(contacts.rolling_spring, w, block, lane)
-        stored = 0.0
+        wound = [entry(field, w, block, lane) for field in ti.static(contacts.wound)]
+        spring, stored = entry(contacts.rolling_spring, w, block, lane), 0.0
         if spring > 0.0:
-            stored = 0.5 * wound * wound / spring
+            stored = 0.5 * dot(wound, wound) / spring
         return stored

@@ -19,7 +19,7 @@ class Frictionless:
 
     wide = True
     constants = ()
-    memory = ()
+    memory = tangents = ()
 
     def coefficients(self, between: Interface) -> list[float]:
         """None."""
@@ -30,9 +30,12 @@ class Frictionless:
         return []
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+    def force(
+        self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, way: ti.template(), dt
+    ):
         """Zero for every lane."""
-        return ti.Vector([0.0 for _ in ti.static(range(contacts.lanes))])
+        lanes = ti.static(range(contacts.lanes))
+        return [ti.Vector([0.0 for _ in lanes]) for _ in ti.static(range(len(slip)))]
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

@@ -5,8 +5,9 @@ import taichi as ti
 from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging, relieved
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
-from solvers.machine.wide import minus, size
-from solvers.space.extremes import greater, lesser, within
+from solvers.machine.wide import minus
+from solvers.space.extremes import greater, lesser
+from solvers.space.tangent import capped, length
 
 
 @ti.data_oriented
@@ -24,7 +25,7 @@ class HaffWerner:
 
     wide = True
     constants = ("limit",)
-    memory = ("followed",)
+    memory = tangents = ("followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, γ_s in N s/m, 0.2/γ_s in m/(N s)]."""
@@ -41,15 +42,21 @@ class HaffWerner:
         return ti.Vector([(2.0 / 7.0) * mass / dt])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+    def force(
+        self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, way: ti.template(), dt
+    ):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
         share, at_once = lesser(c[2] * limit, 1.0), lesser(PROMPT * limit, c[1])
-        fast, before = at_once * slip, contacts.followed[w, block] * relieved(root, rate, dt)
-        room = greater(cap - size(fast), 0.0)
+        turns = ti.static(range(len(slip)))
+        kept = relieved(root, rate, dt)
+        fast = [at_once * slip[k] for k in turns]
+        before = [contacts.followed[k][w, block] * kept for k in turns]
+        room = greater(cap - length(fast), 0.0)
         lag = lagging(c[1] - at_once, share, slip, before, room)
-        contacts.followed[w, block] = lag
-        return within(minus(lag) - fast, cap)
+        for k in ti.static(turns):
+            contacts.followed[k][w, block] = lag[k]
+        return capped([minus(lag[k]) - fast[k] for k in turns], cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

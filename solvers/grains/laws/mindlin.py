@@ -9,7 +9,9 @@ from solvers.grains.laws.splitting import AT_ONCE, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
+from solvers.space.axes import dot
 from solvers.space.extremes import greater, lesser, within
+from solvers.space.tangent import capped
 
 RESOLVED = 0.09  # (ω_t Δt)², for a slip right to 1.2 %
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
@@ -28,14 +30,15 @@ class Mindlin:
     touch, where k_t ~ √ξ begins.
 
     Limits: no micro-slip: the contact sticks as a whole until all of it slides (Mindlin and Deresiewicz 1953 have rings
-    that slide before). The direction of slip is that of one tangent, in a plane.
+    that slide before). In space S would have to be turned with the contact.
 
     Units: F_t, F_n and S N, u_s m/s, k_t N/m, G* Pa, R_eff and ξ m, A s, μ a pure number.
     """
 
     wide = True
     constants = ("shear_limit", "shear_stiffer")
-    memory = ("stretched", "sliding", "root_before")
+    tangents = ("stretched", "sliding")
+    memory = (*tangents, "root_before")
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, k_t / (k √ξ) = 6 G*/E*, A in s]."""
@@ -64,30 +67,35 @@ class Mindlin:
         return ti.Vector([AT_ONCE * M_T * mass / dt, stiffer])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+    def force(
+        self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, way: ti.template(), dt
+    ):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap = c[0] * normal
         spring = c[1] * contacts.stiffness[w, block] * root
         stiff = spring + spring * within(contacts.shear_stiffer[w, block] * spring, STIFFEST)
         before, now = greater(contacts.root_before[w, block], SMALLEST_ROOT), greater(root, SMALLEST_ROOT)
         begins, deeper = root * root < rate * dt, greater(root - before, 0.0)
-        sliding = over_the_step(slip, contacts.sliding[w, block], self.integrator.ahead)
+        turns = ti.static(range(len(slip)))
+        sliding = [over_the_step(slip[k], contacts.sliding[k][w, block], self.integrator.ahead) for k in turns]
         # The mean of √ξ over the step, which ended here, or since first touch, over the present one.
         more = ti.select(begins, root * root, 0.0 - deeper * (now + before + before))
         more = more / ti.select(begins, 1.5 * rate * dt, 3.0 * now * (now + before))
         share = ti.select(begins, more, 1.0 + more)
-        wound = stiff * (share * sliding * dt)
-        held = within(contacts.stretched[w, block] * lesser(root / before, 1.0) + wound, cap)
-        contacts.stretched[w, block] = held
-        contacts.sliding[w, block] = ti.select(root > 0.0, sliding, 0.0 * sliding)
+        wound = [stiff * (share * sliding[k] * dt) for k in turns]
+        kept = lesser(root / before, 1.0)
+        held = capped([contacts.stretched[k][w, block] * kept + wound[k] for k in turns], cap)
+        for k in ti.static(turns):
+            contacts.stretched[k][w, block] = held[k]
+            contacts.sliding[k][w, block] = ti.select(root > 0.0, sliding[k], 0.0 * sliding[k])
         contacts.root_before[w, block] = root
         dashpot = lesser(c[2] * spring, greater(contacts.shear_limit[w, block] - 0.25 * stiff * dt, 0.0))
-        return within(minus(held) - dashpot * slip, cap)
+        return capped([minus(held[k]) - dashpot * slip[k] for k in turns], cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
         spring = c[1] * entry(contacts.stiffness, w, block, lane) * root
         spring += spring * within(entry(contacts.shear_stiffer, w, block, lane) * spring, STIFFEST)
-        held = entry(contacts.stretched, w, block, lane)
-        return 0.5 * held * held / spring
+        held = [entry(field, w, block, lane) for field in ti.static(contacts.stretched)]
+        return 0.5 * dot(held, held) / spring

@@ -19,7 +19,7 @@ class NoRolling:
 
     wide = True
     constants = ()
-    memory = ()
+    memory = tangents = ()
 
     def coefficients(self, between: Interface) -> list[float]:
         """None."""
@@ -30,9 +30,10 @@ class NoRolling:
         return []
 
     @ti.func
-    def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, dt):
+    def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, way: ti.template(), dt):
         """Zero for every lane."""
-        return ti.Vector([0.0 for _ in ti.static(range(contacts.lanes))])
+        lanes = ti.static(range(contacts.lanes))
+        return [ti.Vector([0.0 for _ in lanes]) for _ in ti.static(range(len(turning)))]
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane):

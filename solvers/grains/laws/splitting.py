@@ -4,7 +4,8 @@ from math import inf, sqrt
 
 import taichi as ti
 
-from solvers.space.extremes import greater, lesser, within
+from solvers.space.extremes import greater, lesser
+from solvers.space.tangent import capped
 
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
 # The contacts of a grain act on it together: a network of them is as stiff as one contact times the largest eigenvalue
@@ -47,7 +48,9 @@ def relieved(root, rate, dt):
 
 @ti.func
 def lagging(damping, share, velocity, lag, room):
-    """Force of the part of a damper that the step does not resolve, from its previous value `lag`, within ±`room`.
+    """Force of the part of a damper that the step does not resolve, from its previous value `lag`, capped at `room`.
+
+    Velocity and forces are vectors (`solvers.space.tangent`).
 
     A damper γ on `velocity` is split. γ_f = min(γ, 0.1 m/Δt) acts at once; the rest, `damping` = γ − γ_f, acts through
     a first-order low-pass filter, Ṡ = [(γ − γ_f) u − S]/T, with `share` = Δt/T = min(1, 0.2 (m/Δt)/γ) per step, so
@@ -62,7 +65,8 @@ def lagging(damping, share, velocity, lag, room):
     integration, as in controllers). The work of friction on the grains then rises by no more than S²/(2 k) ≤ (μ F_n
     Δt)²/(0.4 m) in a contact that still bears F_n, and never for good.
     """
-    return within(lag + share * (damping * velocity - lag), room)
+    turns = ti.static(range(len(lag)))
+    return capped([lag[k] + share * (damping * velocity[k] - lag[k]) for k in turns], room)
 
 
 @ti.func

@@ -19,8 +19,8 @@ class ContactList:
     with a stride of 0 they are numbers within their world. `places` are the numbers of valid indices of grains and of
     mates. Constant while a contact is listed are `stiffness` k (N/m^1.5), `reach` (m), the centre distance at which the
     two touch, `share`, the first grain's part of it, and the laws' constants. The laws' memory changes, and is zero
-    while the two do not touch. Constants, memory and `more` memories of other owners are fields under the names given;
-    `fleeting` ones are not carried over to the next list.
+    while the two do not touch. Constants, memory and `more` memories of other owners are fields under the names given,
+    or the list of them where a law remembers a vector; `fleeting` ones are not carried over to the next list.
     """
 
     def __init__(
@@ -60,8 +60,11 @@ class ContactList:
         memory, remembered = (*laws.memory, *more), arrays.under("memory")
         self.memory = remembered.vectors(axes, *laws.memory, **ways)
         self.memory += remembered.vectors(self.each, *more, **ways)
-        for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
+        of_laws, others = self.memory[: len(laws.memory)], self.memory[len(laws.memory) :]
+        for name, field in zip((*laws.constants, *more), (*self.constants, *others), strict=True):
             setattr(self, name, field)
+        for name, fields in laws.by_name(of_laws).items():
+            setattr(self, name, fields)
         self.memories, others = len(self.memory), arrays.under("fleeting").vectors(axes, *fleeting, **ways)
         for name, field in zip(fleeting, others, strict=True):
             setattr(self, name, field)

@@ -62,7 +62,7 @@ class Wear:
             for a in ti.static(range(self.grains.axes)):
                 self.built[a][w, i] = self.grains.place[a][w, i]
             if ti.static(self.grains.shaped):
-                self.built_angle[w, i] = self.grains.angle[w, i]
+                self.built_angle[w, i] = self.grains.angle[0][w, i]
         self.travel[u], self.built_at[u] = 0.0, t
         self.look_again(u, t, 0.0, 0.0, 0.0)
 
@@ -138,5 +138,5 @@ class Wear:
         ]
         way = ti.sqrt(dot(gone, gone))
         if ti.static(self.grains.shaped):
-            way += ti.abs(self.grains.angle[w, i] - self.built_angle[w, i]) * self.grains.reach[w, i]
+            way += ti.abs(self.grains.angle[0][w, i] - self.built_angle[w, i]) * self.grains.reach[w, i]
         return way

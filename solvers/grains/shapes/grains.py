@@ -18,7 +18,8 @@ class ShapedState(GrainState):
     """Grains whose outlines have the numbers `shape` (W, n + k + ghosts); fixed grains are discs, the last outline.
 
     Mass is that of the sphere of equal area, inertia that of `Contour.inertia`. `turn_y` and `turn_z` are cos and sin
-    of the angle, computed once per step for all contacts. Outlines are plane: `y` and `z` are all of `place`.
+    of the angle, computed once per step for all contacts. Outlines are plane: `y` and `z` are all of `place`,
+    and `angle` has one entry.
     """
 
     shaped = True
@@ -51,7 +52,7 @@ class ShapedState(GrainState):
         """Place the grains at `position` (W, n, 2) m with their start angles, at rest and without history."""
         super().put(position)
         angle = self._filled(self.start_angle, 0.0, 0.0)
-        for field, values in ((self.angle, angle), (self.turn_y, np.cos(angle)), (self.turn_z, np.sin(angle))):
+        for field, values in ((self.angle[0], angle), (self.turn_y, np.cos(angle)), (self.turn_z, np.sin(angle))):
             field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
 
     def count_turns_anew(self) -> None:

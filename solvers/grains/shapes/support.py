@@ -34,8 +34,8 @@ class Support:
         for k in range(TRIED):
             along = apart[0] * self.directions[k, 0] + apart[1] * self.directions[k, 1]
             angle = k * ti.static(pi / TRIED) + ti.select(along < 0.0, pi, 0.0)  # from j to i
-            own = g.radius[w, i] * self.most[g.shape[w, i], self.cell(angle + pi - g.angle[w, i])]
-            other = g.radius[w, j] * self.most[g.shape[w, j], self.cell(angle - g.angle[w, j])]
+            own = g.radius[w, i] * self.most[g.shape[w, i], self.cell(angle + pi - g.angle[0][w, i])]
+            other = g.radius[w, j] * self.most[g.shape[w, j], self.cell(angle - g.angle[0][w, j])]
             best = greater(ti.abs(along) - own - other, best)
         return best
 

@@ -14,6 +14,7 @@ from solvers.grains.laws.chosen import PAIR, ChosenLaws
 from solvers.grains.materials import hertz_stiffness, interface
 from solvers.grains.restitution import CONSTANT, FIRST_ORDER, VISCOELASTIC, damping_for, linear_restitution, restitution
 from solvers.machine import runtime
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from tests.oracles.axes import axes
@@ -26,6 +27,7 @@ MASS = 4 / 3 * pi * (2 * RADIUS) ** 3 * 1319.0 / 2
 DT = 4e-7
 DEEP = 1e-5  # m
 APART = -1e-3  # m, the second lane's overlap
+ALONG, ACROSS = (0.6, 0.0, -0.8), (0.8, 0.0, 0.6)  # in space
 GRAIN = material(friction=0.4, rolling_friction=0.2)
 BETWEEN = interface(GRAIN, GRAIN, MASS, RADIUS, 1.0)
 
@@ -36,33 +38,41 @@ class Driven:
 
     lanes = 2
 
-    def __init__(self, normal="hertz-viscoelastic", tangential="none", rolling="none", between=BETWEEN):
+    def __init__(
+        self, normal="hertz-viscoelastic", tangential="none", rolling="none", between=BETWEEN, dimensions=PLANE
+    ):
         runtime.initialise(1)
+        self.along, self.across = (ALONG, ACROSS) if dimensions > PLANE else ((1.0,), (0.0,))
         self.arrays = arrays = State()
         laws = NORMAL[normal](), TANGENTIAL[tangential](), ROLLING[rolling](), COHESION["none"]()
-        self.laws = ChosenLaws(arrays, Units(1, 1, 1, 1), *laws, [(between, between)])
+        self.laws = ChosenLaws(arrays, Units(1, 1, 1, 1), *laws, [(between, between)], axes=dimensions)
         (self.stiffness,) = arrays.vectors(axes(1, 1, self.lanes), "stiffness")
         self.constants = arrays.vectors(axes(1, 1, self.lanes), *self.laws.constants)
         self.memory = arrays.vectors(axes(1, 1, self.lanes), *self.laws.memory)
-        names = self.laws.constants + self.laws.memory
+        names = *self.laws.constants, *self.laws.memory
         assert len(set(names)) == len(names)
-        for name, field in zip(names, self.constants + self.memory, strict=True):
+        constants = dict(zip(self.laws.constants, self.constants, strict=True))
+        for name, field in (constants | self.laws.by_name(self.memory)).items():
             setattr(self, name, field)
         self.memories = len(self.memory)
         arrays.finish()
         self.stiffness.fill(hertz_stiffness(between.young_modulus, RADIUS))
 
     def move(self, overlap, slip=0.0, turning=0.0, dt=DT):
-        """Forces and torque (T, 3) of lane 0 and its elastic energy (T,) along overlaps (T,) m; memory is cleared."""
+        """Forces and torque (T, 3) of lane 0 and its elastic energy (T,) along overlaps (T,) m; memory is cleared.
+
+        In space what is across the normal, or about it, has the direction ALONG, and none of it may be ACROSS.
+        """
         overlap = np.asarray(overlap, dtype=float)
         rate = np.gradient(overlap, dt)
         path = np.stack([overlap, rate, *(np.broadcast_to(x, overlap.shape) for x in (slip, turning))], axis=-1)
-        result = np.zeros((len(path), 6))
+        result = np.zeros((len(path), 8))
         for field in self.memory:
             field.fill(0.0)
         self._prepare(dt)
         self._move(np.ascontiguousarray(path), result, dt)
-        assert np.all(result[:, 4:] == 0.0)  # the lane that does not touch
+        assert np.all(result[:, 4:6] == 0.0)  # the lane that does not touch
+        assert np.all(np.abs(result[:, 6:]) <= 1e-12 * np.abs(result[:, 1:3]).max(axis=0))
         return result[:, :3], result[:, 3]
 
     @ti.kernel
@@ -76,12 +86,20 @@ class Driven:
             for k in range(path.shape[0]):
                 first = ti.Vector([1.0, 0.0])
                 approach, rate = path[k, 0] * first + APART * (1.0 - first), path[k, 1] + 0.0 * first
-                slip, turning = path[k, 2] + 0.0 * first, path[k, 3] + 0.0 * first
-                fn, ft, torque = self.laws.forces(PAIR, self, 0, 0, approach, rate, slip, turning, dt)
-                result[k, 0], result[k, 1], result[k, 2] = fn[0], ft[0], torque[0]
+                slip = [path[k, 2] * one + 0.0 * first for one in ti.static(self.along)]
+                turning = [path[k, 3] * one + 0.0 * first for one in ti.static(self.along)]
+                fn, ft, torque = self.laws.forces(PAIR, self, 0, 0, approach, rate, slip, turning, None, dt)
+                result[k, 0] = fn[0]
+                for n in ti.static(range(len(self.along))):
+                    result[k, 1] += ft[n][0] * self.along[n]
+                    result[k, 2] += torque[n][0] * self.along[n]
+                    result[k, 6] += ft[n][0] * self.across[n]
+                    result[k, 7] += torque[n][0] * self.across[n]
                 if path[k, 0] > 0.0:
                     result[k, 3] = self.laws.energy(PAIR, self, 0, 0, path[k, 0])
-                result[k, 4] = ti.abs(fn[1]) + ti.abs(ft[1]) + ti.abs(torque[1])
+                result[k, 4] = ti.abs(fn[1])
+                for n in ti.static(range(len(self.along))):
+                    result[k, 4] += ti.abs(ft[n][1]) + ti.abs(torque[n][1])
                 for m in ti.static(range(self.memories)):
                     result[k, 5] += ti.abs(self.memory[m][0, 0][1])
 
@@ -215,14 +233,31 @@ def test_rolling_torque_is_friction_times_radius(driven, law, dt):
     assert force[[19999, 39999], 2] == pytest.approx([-cap[0], cap[0]], rel=1e-9)
 
 
-def test_rolling_memory_changes_its_sign_when_grains_are_swapped(driven):
-    """The one that remembers ω_i − ω_j, and no other; the slip of two grains is the same from either."""
-    contact = driven(normal="hysteretic", tangential="mindlin", rolling="elastic-plastic")
+@pytest.mark.parametrize(
+    ("tangential", "rolling"), [(law, "none") for law in TANGENTIAL] + [("none", law) for law in ROLLING]
+)
+def test_in_space_a_law_is_that_of_the_plane_along_any_line(driven, tangential, rolling):
+    """Where all that slips and turns has one direction: sticking, sliding, turning round, under a changing load."""
+    overlap = DEEP * (1.0 + 0.3 * np.sin(np.linspace(0.0, 20.0, 3000)))
+    slip, turning = np.repeat([[1e-3, -2e-2, 1e-4]] * 2, 1000, axis=1) * [[1.0], [1e3]]
+    (plane, stored), (space, stored_in_space) = (
+        driven(tangential=tangential, rolling=rolling, dimensions=axes).move(overlap, slip, turning)
+        for axes in (PLANE, SPACE)
+    )
+    assert np.abs(plane[:, 1:]).max() > 0.0 or (tangential, rolling) == ("none", "none")
+    assert np.all(np.abs(space - plane) <= 1e-11 * np.abs(plane).max(axis=0))  # 3000 sums with errors of some 1e-16
+    np.testing.assert_allclose(stored_in_space, stored, rtol=1e-11, atol=1e-11 * stored.max())
+
+
+@pytest.mark.parametrize("dimensions", [PLANE, SPACE])
+def test_memory_of_what_turns_round_changes_its_sign_when_grains_are_swapped(driven, dimensions):
+    """That of ω_i − ω_j does; that of slip in space alone, since in the plane the tangent turns round with it."""
+    contact = driven(normal="hysteretic", tangential="mindlin", rolling="elastic-plastic", dimensions=dimensions)
     kept = []
-    for turning in (1.0, -1.0):
-        contact.move(np.full(20, DEEP), 1e-3, turning)
+    for sign in (1.0, -1.0):
+        contact.move(np.full(20, DEEP), 1e-3 * (sign if dimensions == SPACE else 1.0), sign)
         kept.append([field.to_numpy()[0, 0, 0] for field in contact.memory])
-    assert np.all(np.array(kept[0]) != 0.0)
+    assert np.count_nonzero(kept[0]) == len(kept[0]) - (dimensions == SPACE) * 3 * ALONG.count(0.0)
     assert kept[1] == pytest.approx(np.where(contact.laws.odd, -1.0, 1.0) * kept[0], rel=1e-12, abs=0.0)
 
 

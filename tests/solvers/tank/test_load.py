@@ -59,7 +59,7 @@ def momenta(run: Simulation) -> np.ndarray:
     Of the velocities that Verlet's kicks have changed: what they gain is the impulse, to rounding.
     """
     r, mass, g = run.snapshot()["position"], run.grains.mass, run.grains.grains
-    y, z, spin = (field.to_numpy()[:, :COUNT] for field in (*g.velocity, g.spin))
+    y, z, spin = (field.to_numpy()[:, :COUNT] for field in (*g.velocity, *g.spin))
     v = np.stack([y, z], axis=2)
     angular = mass * (r[..., 0] * v[..., 1] - r[..., 1] * v[..., 0]) + 0.4 * mass * RADIUS**2 * spin
     return np.concatenate([(mass[..., None] * v).sum(axis=1), angular.sum(axis=1)[:, None]], axis=1)
@@ -159,7 +159,7 @@ def test_the_load_is_minus_the_forces_on_the_grains_of_that_instant(looks, box_r
     assert (np.abs(run.loads()).max(axis=2) > 0.0).all(), "walls, shelf, paddle and fixed grains are loaded"
     Pushing(run).push(run.time, run.dt)
     g, place = run.grains.grains, run.snapshot()["position"]
-    y, z, torque = (field.to_numpy()[:, :COUNT] for field in (*g.force, g.torque))
+    y, z, torque = (field.to_numpy()[:, :COUNT] for field in (*g.force, *g.torque))
     moment = place[..., 0] * z - place[..., 1] * y + torque
     acting = np.stack([y.sum(axis=1), z.sum(axis=1), moment.sum(axis=1)], axis=1)
     scale = np.hypot(y, z).sum(axis=1)[:, None] * [1.0, 1.0, 0.1]

@@ -84,7 +84,7 @@ class Parts:
             i, j = pairs.grain[0, block], pairs.mate[0, block]
             normal, distance, approach = self.contacts.geometry(g, i, j, pairs.reach[0, block], pairs.lanes)
             velocity = self.contacts.differences(g.now, i, j, pairs.lanes)
-            spin = gathered(g.spin_now, i, pairs.lanes) + gathered(g.spin_now, j, pairs.lanes)
+            spin = gathered(g.spin_now[0], i, pairs.lanes) + gathered(g.spin_now[0], j, pairs.lanes)
             total += distance + ti.max(approach, 0.0) + dot(velocity, normal) + spin
         self.keep(total)
 
@@ -101,8 +101,9 @@ class Parts:
         for block in range(pairs.blocks(0)):
             # Slower than they press, as grains that have nearly come to rest.
             overlap = OVERLAP * pairs.share[0, block]
-            fn, ft, roll = self.contacts.laws.forces(PAIR, pairs, 0, block, overlap, overlap, overlap, overlap, dt)
-            total += fn + ft + roll
+            turns = [overlap]
+            fn, ft, roll = self.contacts.laws.forces(PAIR, pairs, 0, block, overlap, overlap, turns, turns, None, dt)
+            total += fn + ft[0] + roll[0]
         self.keep(total)
 
     @ti.kernel
@@ -118,9 +119,9 @@ class Parts:
             i, target = pairs.grain[0, block], pairs.target[0, block]
             f = dt * pairs.share[0, block]
             for k in ti.static(range(pairs.lanes)):
-                g.push(0, i[k], [f[k] for _ in range(g.axes)], f[k])
+                g.push(0, i[k], [f[k] for _ in range(g.axes)], [f[k] for _ in range(g.turns)])
             for k in ti.static(range(pairs.lanes)):
-                g.push(0, target[k], [-f[k] for _ in range(g.axes)], -f[k])
+                g.push(0, target[k], [-f[k] for _ in range(g.axes)], [-f[k] for _ in range(g.turns)])
 
     @ti.func
     def nothing(self):

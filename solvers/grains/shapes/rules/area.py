@@ -51,8 +51,8 @@ class Area(Single):
         one, two, apart = g.outline(w, i), g.outline(w, j), g.apart(w, i, j)
         between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
         way = ti.abs(apart[0] - pairs.from_y[u, p][0]) + ti.abs(apart[1] - pairs.from_z[u, p][0])
-        way += g.reach[w, i] * ti.abs(g.angle[w, i] - pairs.from_first[u, p][0])
-        way += g.reach[w, j] * ti.abs(g.angle[w, j] - pairs.from_second[u, p][0])
+        way += g.reach[w, i] * ti.abs(g.angle[0][w, i] - pairs.from_first[u, p][0])
+        way += g.reach[w, j] * ti.abs(g.angle[0][w, j] - pairs.from_second[u, p][0])
         window = pairs.window[u, p][0]
         first, edges = ti.cast(pairs.edge_first[u, p][0], ti.i32), ti.cast(pairs.edges[u, p][0], ti.i32)
         anew = way >= window
@@ -65,7 +65,7 @@ class Area(Single):
             if anew:
                 pairs.window[u, p][0], pairs.edge_first[u, p][0], pairs.edges[u, p][0] = window, first, edges
                 pairs.from_y[u, p][0], pairs.from_z[u, p][0] = apart[0], apart[1]
-                pairs.from_first[u, p][0], pairs.from_second[u, p][0] = g.angle[w, i], g.angle[w, j]
+                pairs.from_first[u, p][0], pairs.from_second[u, p][0] = g.angle[0][w, i], g.angle[0][w, j]
         contact = contact_of(total, one.scale * two.scale / (one.scale + two.scale), two.turn)
         if contact[0] == 0.0:
             contact[0] = -greater(lesser(gap, window - way), 0.0)

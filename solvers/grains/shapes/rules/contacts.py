@@ -119,14 +119,16 @@ class ShapedContacts(Contacts):
                 fy, fz, torque = fy - less * my, fz - less * mz, torque - less * (ky * mz - kz * my)
                 pressing -= less
         slip = uz * ny - uy * nz
-        ft, roll = self.laws.rub(PAIR, pairs, u, block, overlap, rate, greater(pressing, 0.0), slip, turning, dt)
-        fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll
+        bearing = greater(pressing, 0.0)
+        shear, roll = self.laws.rub(PAIR, pairs, u, block, overlap, rate, bearing, [slip], [turning], None, dt)
+        ft = shear[0]
+        fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll[0]
         self.push_block(g, pairs, i, u, block, fy, fz, torque, minus(torque) - (apart_y * fz - apart_z * fy), load)
 
     @ti.func
     def passing(self, g: ti.template(), pairs: ti.template(), i, j, ly, lz, apart_y, apart_z):
         """Velocities (y, z) m/s of grains i relative to j at points (y, z) m from i's centres, and relative spins."""
-        spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
+        spin_i, spin_j = gathered(g.spin_now[0], i, pairs.lanes), gathered(g.spin_now[0], j, pairs.lanes)
         uy = gathered(g.now[0], i, pairs.lanes) - gathered(g.now[0], j, pairs.lanes)
         uz = gathered(g.now[1], i, pairs.lanes) - gathered(g.now[1], j, pairs.lanes)
         uy = uy - spin_i * lz + spin_j * (lz + apart_z)
@@ -143,9 +145,9 @@ class ShapedContacts(Contacts):
             swapped = listed != i
             fy, fz = ti.select(swapped, minus(fy), fy), ti.select(swapped, minus(fz), fz)
             torque_i, torque_j = ti.select(swapped, torque_j, torque_i), ti.select(swapped, torque_i, torque_j)
-        self.push_both(g, pairs, u, block, listed, [fy, fz], torque_i, torque_j)
+        self.push_both(g, pairs, u, block, listed, [fy, fz], [[torque_i], [torque_j]])
         if ti.static(self.lined):
-            load += self.on_lining(g, pairs, u, listed, pairs.mate[u, block], [fy, fz], torque_i)
+            load += self.on_lining(g, pairs, u, listed, pairs.mate[u, block], [fy, fz], [torque_i])
 
     @ti.func
     def unsettled(self, contacts: ti.template(), u, p, c):
@@ -166,19 +168,10 @@ class ShapedContacts(Contacts):
     @ti.func
     def rubbed(self, kind: ti.template(), contacts: ti.template(), u, p, c, rate, pressing, slip, turning, dt):
         """Tangential force (N) and rolling torque (N m) of a contact."""
-        ft, roll = self.laws.rub(
-            kind,
-            contacts,
-            u,
-            p,
-            ti.Vector([greater(c[OVERLAP], 0.0)]),
-            ti.Vector([rate]),
-            ti.Vector([greater(pressing, 0.0)]),
-            ti.Vector([slip]),
-            ti.Vector([turning]),
-            dt,
-        )
-        return ft[0], roll[0]
+        overlap, bearing = ti.Vector([greater(c[OVERLAP], 0.0)]), ti.Vector([greater(pressing, 0.0)])
+        slips, spins = [ti.Vector([slip])], [ti.Vector([turning])]
+        ft, roll = self.laws.rub(kind, contacts, u, p, overlap, ti.Vector([rate]), bearing, slips, spins, None, dt)
+        return ft[0][0], roll[0][0]
 
     @ti.func
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
@@ -196,7 +189,7 @@ class ShapedContacts(Contacts):
     ):
         """Apply the force of contact p to its grain and to the wall."""
         i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
-        turning = g.spin_now[w, i] - self.walls.rate(feature, shift)
+        turning = g.spin_now[0][w, i] - self.walls.rate(feature, shift)
         if ti.static(hasattr(contacts, SURE)):
             velocity = self.walls.velocity(feature, shift, g.y[w, i], g.z[w, i])
             speed = ti.abs(g.now[0][w, i] - velocity[0]) + ti.abs(g.now[1][w, i] - velocity[1])
@@ -217,7 +210,8 @@ class ShapedContacts(Contacts):
                 force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
         ft, roll = self.rubbed(WALL, contacts, u, p, c, rate, pressing, slip, turning, dt)
         force += ft * ti.Vector([-n[1], n[0]])
-        self.push_off(g, w, i, u, feature, [force[0], force[1]], torque + ft * lever.dot(n) + roll, load)
+        torque = torque + ft * lever.dot(n) + roll
+        self.push_off(g, w, i, u, feature, [force[0], force[1]], [torque], load)
 
     @ti.func
     def wall_pressed(
@@ -225,8 +219,8 @@ class ShapedContacts(Contacts):
     ):
         """Closing speed and slip (m/s) of a grain on a wall, and the normal force (N)."""
         velocity = self.walls.velocity(feature, shift, g.y[w, i] + lever[0], g.z[w, i] + lever[1])
-        uy = g.now[0][w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
-        uz = g.now[1][w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
+        uy = g.now[0][w, i] - velocity[0] - g.spin_now[0][w, i] * lever[1]
+        uz = g.now[1][w, i] - velocity[1] + g.spin_now[0][w, i] * lever[0]
         return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)
 
     @ti.func

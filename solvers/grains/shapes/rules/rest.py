@@ -109,8 +109,8 @@ class Rest:
         lanes = ti.static(range(self.lanes))  # cast lane by lane, as real vectors have to be
         y = ti.Vector([ti.cast(g.y[0, i[k]] - g.y[0, j[k]], g.real) for k in lanes])
         z = ti.Vector([ti.cast(g.z[0, i[k]] - g.z[0, j[k]], g.real) for k in lanes])
-        angle_i = gathered(g.angle, i, self.lanes) - pairs.angle_first[u, block]
-        angle_j = gathered(g.angle, j, self.lanes) - pairs.angle_second[u, block]
+        angle_i = gathered(g.angle[0], i, self.lanes) - pairs.angle_first[u, block]
+        angle_j = gathered(g.angle[0], j, self.lanes) - pairs.angle_second[u, block]
         return y - pairs.apart_y[u, block], z - pairs.apart_z[u, block], angle_i, angle_j
 
     @ti.func
@@ -154,8 +154,8 @@ class Rest:
             apart = g.apart(w, i, j)
             enter(pairs.apart_y, u, block, lane, apart[0])
             enter(pairs.apart_z, u, block, lane, apart[1])
-            enter(pairs.angle_first, u, block, lane, g.angle[w, i])
-            enter(pairs.angle_second, u, block, lane, g.angle[w, j])
+            enter(pairs.angle_first, u, block, lane, g.angle[0][w, i])
+            enter(pairs.angle_second, u, block, lane, g.angle[0][w, j])
             self.remember(self.contact, pairs, u, block, lane, c)
             if ti.static(self.bent):
                 self.remember(self.saddle, pairs, u, block, lane, d)
@@ -163,7 +163,7 @@ class Rest:
     @ti.func
     def step(self, g: ti.template(), w, i, j, dt):
         """Upper bound on how far (m) any points of two grains move past each other in a step."""
-        turns = g.reach[w, i] * ti.abs(g.spin_now[w, i]) + g.reach[w, j] * ti.abs(g.spin_now[w, j])
+        turns = g.reach[w, i] * ti.abs(g.spin_now[0][w, i]) + g.reach[w, j] * ti.abs(g.spin_now[0][w, j])
         return dt * (ti.abs(g.now[0][w, i] - g.now[0][w, j]) + ti.abs(g.now[1][w, i] - g.now[1][w, j]) + turns)
 
     @ti.func
