@@ -33,6 +33,7 @@ def setting_of(run) -> Setting:
     return Setting(
         arrays=run.arrays,
         worlds=run.scene.worlds,
+        axes=run.scene.axes,
         bands=run.units_a_world,
         per_particle=run.schedule_name == "per-grain",
         walls=run.walls,

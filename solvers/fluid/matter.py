@@ -59,7 +59,7 @@ class WaterMatter(Matter):
         self.gas = fluid.particles["gas"].astype(float)
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
-        sizes = scene.axes, worlds, count, lanes, walls, grid.strips
+        sizes = setting.axes, worlds, count, lanes, walls, grid.strips
         self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among, water.apart > 0.0)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units, fluid.pace)

@@ -30,11 +30,11 @@ def make_grains(scene, setting: Setting) -> GrainMatter:
     may_leave = any(tank.open_edges for tank in scene.tanks)
     state = given.radius, given.density, given.fixed, units.ghosts, may_leave, given.kind
     integrator = INTEGRATORS[given.integrator]()
-    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator, scene.axes)
+    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator, setting.axes)
     laws.wide = setting.vectors if laws.fit and given.bears_vectors and not units.single else 0
     moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
     discs = given.shapes is None
-    grains = GrainState(arrays, scene.axes, *state) if discs else ShapedState(arrays, given.shapes, *state)
+    grains = GrainState(arrays, setting.axes, *state) if discs else ShapedState(arrays, given.shapes, *state)
     together = discs and units.whole
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
     wide = widths(scene, setting.skin, units.single, together)

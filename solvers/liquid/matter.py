@@ -12,7 +12,6 @@ from solvers.machine.state import Axis
 from solvers.machine.units import Units
 from solvers.motion.carrier import per_slab
 from solvers.ship.body import Body, frozen
-from solvers.tank.load import ENTRIES
 from solvers.tank.matter import Matter
 from solvers.tank.setting import Setting
 
@@ -100,7 +99,7 @@ class LiquidMatter(Matter):
                 turning -= m * high * high
             none = 0.0 * mass
             entries = ti.Vector([across, none, slant, none, mass, mass * y, slant, mass * y, turning])
-            for n in ti.static(range(len(ENTRIES))):
+            for n in ti.static(range(self.load.entries)):
                 self.load.inertia[u, self.piece[k], n] = entries[n]
             self.load.book(u, self.piece[k], ti.Vector([force_y, force_z, moment]), dt)
 

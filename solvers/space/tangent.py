@@ -4,10 +4,9 @@ What is across a normal, or about it, is a list with an entry per axis about whi
 plane that is one number: along the tangent, the normal turned counter-clockwise by 90°, or about x. In space it is a
 vector with the components of all others.
 
-These functions are all that a law or a list of contacts knows of it, but for springs with memory. In the plane what a
-spring has stored goes with the tangent by itself; in space it has to be turned with the contact, whose normal swings
-and about whose normal both grains twist. Laws are handed that `way` for it; it is None, since no scene has three axes
-as yet.
+That holds of what a contact does at an instant. What a spring remembers of former steps turns with the tangent by
+itself in the plane. In space it has to be turned, as the normal swings and the grains twist about it; laws are handed
+the `way` of the contact for that, which is None as yet: scenes are plane.
 """
 
 import taichi as ti

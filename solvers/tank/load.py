@@ -8,16 +8,18 @@ Pieces are the walls of each tank, the parts, and the lining of fixed grains.
 import numpy as np
 import taichi as ti
 
+from solvers.machine.quantity import PLANE, directions
 from solvers.machine.state import Axis, Scope
 from solvers.machine.units import APART, Units
-
-NAMES = ("y", "z", "moment")
-ENTRIES = tuple((i, j) for i in range(3) for j in range(3))  # of a matrix, row by row
+from solvers.space.axes import named_turns
 
 
 @ti.data_oriented
 class Load:
     """The load of each unit on each of `pieces` pieces, as impulse (N s, N m s) since it was last taken.
+
+    It has a number for each of the `freedoms` of a body: forces along the axes, then moments about those about which
+    it can turn. A matrix has as many rows and columns, and `entries` in all, row by row.
 
     With `shares` (W, pieces) the present load is kept as well; summed over the pieces with these factors it is what a
     carrier responds to. None: no carrier responds. The load of a matter that acts `every` few steps stands in between:
@@ -27,21 +29,31 @@ class Load:
 
     A matter that is `pressed` answers an acceleration a of the tank's origin (y, z, roll; tank's axes) at once, by the
     load F − A a. Its present load is F, that of a tank that is not accelerated, and A (about the origin) its `inertia`.
-    One that answers the acceleration of the last step has a `late` inertia (W, 3, 3), which is zero if none is known;
-    the carrier takes it on its own side if the load is `eased`.
+    One that answers the acceleration of the last step has a `late` inertia, a matrix of each world, which is zero if
+    none is known; the carrier takes it on its own side if the load is `eased`.
     """
 
     pressed = eased = False
     late = None
 
-    def __init__(self, arrays: Scope, units: Units, pieces: int, shares: np.ndarray | None = None, every: int = 1):
+    def __init__(
+        self,
+        arrays: Scope,
+        units: Units,
+        pieces: int,
+        shares: np.ndarray | None = None,
+        every: int = 1,
+        axes: int = PLANE,
+    ):
         self.units, self.pieces, self.answered = units, pieces, shares is not None
+        names = *directions(axes), *named_turns("moment", axes)
+        self.freedoms, self.entries = len(names), len(names) ** 2
         room = pieces if units.single else -(-pieces // APART) * APART  # no two units write to one cache line
         self.exact = arrays.exact
-        own, axes = arrays.under("load"), (units.axis, Axis("piece", room))
+        own, each = arrays.under("load"), (units.axis, Axis("piece", room))
 
         def declared(what: str, kept: bool) -> list[ti.Field]:
-            return own.reals(axes, *(f"{what}_{name}" for name in NAMES), kind=own.exact, kept=kept)
+            return own.reals(each, *(f"{what}_{name}" for name in names), kind=own.exact, kept=kept)
 
         self.impulse, self.noted = declared("impulse", True), declared("noted", False)
         if self.answered:
@@ -55,11 +67,11 @@ class Load:
     def answer(self, arrays: Scope) -> None:
         """Take an inertia of each piece as well."""
         self.pressed = True
-        piece = Axis("piece", self.pieces), Axis("entry", len(ENTRIES))
+        piece = Axis("piece", self.pieces), Axis("entry", self.entries)
         (self.inertia,) = arrays.under("load").reals((self.units.axis, *piece), "inertia", kind=self.exact, kept=False)
 
     def lag(self, late: np.ndarray, eased: bool) -> None:
-        """Have a `late` inertia (W, 3, 3), about the tank's origin, per metre of the carrier's length."""
+        """Have a `late` inertia (W, freedoms, freedoms), about the tank's origin, per metre of the carrier's length."""
         self.late, self.eased = late, eased and len(late) > 0
 
     @ti.func
@@ -67,7 +79,7 @@ class Load:
         """Add the matrix A of a world to a row of `matrix`, summed over units and pieces with the shares."""
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             for piece in range(self.pieces):
-                for k in ti.static(range(len(ENTRIES))):
+                for k in ti.static(range(self.entries)):
                     matrix[w, k] = matrix[w, k] + self.shares[w, piece] * self.inertia[u, piece, k]
 
     def forget(self) -> None:
@@ -84,18 +96,18 @@ class Load:
             if ti.static(self.stands):
                 self.known[u] = ti.min(self.known[u] + 1, 2)
             for piece in range(self.pieces):
-                for k in ti.static(range(3)):
+                for k in ti.static(range(self.freedoms)):
                     if ti.static(self.stands):
                         self.former[k][u, piece] = self.instant[k][u, piece]
                     self.instant[k][u, piece] = 0.0
 
     @ti.func
     def book(self, u, piece, load, dt):
-        """Add a unit's load on a piece, force (y, z) and moment, during a step of dt (s).
+        """Add a unit's load on a piece, forces and moments, during a step of dt (s).
 
         Called once per step and piece, since a running sum over single contacts would lose digits.
         """
-        for k in ti.static(range(3)):
+        for k in ti.static(range(self.freedoms)):
             pushed = ti.cast(load[k], self.exact)
             self.impulse[k][u, piece] = self.impulse[k][u, piece] + pushed * dt
             if ti.static(self.answered):
@@ -104,33 +116,33 @@ class Load:
     @ti.func
     def book_answer(self, u, piece, gains, dt):
         """Add −A a of a unit's inertia on a piece, for an acceleration a of the tank's origin, to what is told."""
-        for i in ti.static(range(3)):
+        for i in ti.static(range(self.freedoms)):
             pushed = ti.cast(0.0, self.exact)
-            for j in ti.static(range(3)):
-                pushed += self.inertia[u, piece, 3 * i + j] * gains[j]
+            for j in ti.static(range(self.freedoms)):
+                pushed += self.inertia[u, piece, self.freedoms * i + j] * gains[j]
             self.impulse[i][u, piece] = self.impulse[i][u, piece] - pushed * dt
 
     @ti.func
     def note(self, u, piece, load):
         """Add the load of one contact of a unit on a piece, for `book_noted`."""
-        for k in ti.static(range(3)):
+        for k in ti.static(range(self.freedoms)):
             self.noted[k][u, piece] = self.noted[k][u, piece] + ti.cast(load[k], self.exact)
 
     @ti.func
     def book_noted(self, u, dt):
         """Book all that has been noted for a unit, and clear it."""
         for piece in range(self.pieces):
-            self.book(u, piece, ti.Vector([self.noted[k][u, piece] for k in ti.static(range(3))]), dt)
-            for k in ti.static(range(3)):
+            self.book(u, piece, ti.Vector([self.noted[k][u, piece] for k in ti.static(range(self.freedoms))]), dt)
+            for k in ti.static(range(self.freedoms)):
                 self.noted[k][u, piece] = 0.0
 
     @ti.func
     def of_world(self, w):
         """The load that a world's carrier responds to, summed over units and pieces in their order."""
-        load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
+        load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(self.freedoms))])
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             for piece in range(self.pieces):
-                for k in ti.static(range(3)):
+                for k in ti.static(range(self.freedoms)):
                     pushed = self.instant[k][u, piece]
                     if ti.static(self.stands):  # noqa: SIM102 (compiled only where it stands)
                         if self.known[u] > 1:
@@ -141,7 +153,7 @@ class Load:
     @ti.func
     def take(self, u, piece):
         """The impulse of a unit on a piece since it was last taken, and clear it."""
-        found = ti.Vector([self.impulse[k][u, piece] for k in ti.static(range(3))])
-        for k in ti.static(range(3)):
+        found = ti.Vector([self.impulse[k][u, piece] for k in ti.static(range(self.freedoms))])
+        for k in ti.static(range(self.freedoms)):
             self.impulse[k][u, piece] = 0.0
         return found

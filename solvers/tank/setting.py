@@ -13,7 +13,7 @@ from solvers.tank.walls import Walls
 
 @dataclass(frozen=True)
 class Setting:
-    """The arrays of a simulation of W `worlds`, its tanks' walls, the `parts` in them, and the `carrier`.
+    """The arrays of a simulation of W `worlds` of so many `axes`, its tanks' walls, the `parts` in them, the `carrier`.
 
     A world is cut into `bands`, or with `per_particle` into single particles. `pieces` things bear loads; `shares`
     (W, pieces) are the factors with which the carrier responds to the load on each (`Load`). Lists of grains have the
@@ -26,6 +26,7 @@ class Setting:
 
     arrays: State
     worlds: int
+    axes: int
     bands: int
     per_particle: bool
     walls: Walls
@@ -46,4 +47,4 @@ class Setting:
 
     def load(self, own: Scope, units: Units, every: int = 1) -> Load:
         """The load of a matter that acts `every` few steps; its arrays are declared in the matter's `own` scope."""
-        return Load(own, units, self.pieces, self.shares, every)
+        return Load(own, units, self.pieces, self.shares, every, self.axes)
