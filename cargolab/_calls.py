@@ -30,9 +30,13 @@ def calibrate(
     error, "repose=30 ± 0.8 deg". At least eight beds are run. cluster: the address of a Dask scheduler; `overrides` as
     in `run`.
     """
+    from lab.preset.find import screen
+
+    given = dotted(overrides, repeats)
+    screen(preset, given)  # before the slow imports
     from lab.sweeps.calibrate import calibrate as calibrated
 
-    return calibrated(preset, target, vary, dotted(overrides, repeats), out, quiet=quiet, cluster=cluster)
+    return calibrated(preset, target, vary, given, out, quiet=quiet, cluster=cluster)
 
 
 def open(path: Path | str, *, sound: bool = False) -> "Recording":
@@ -55,9 +59,11 @@ def presets(word: str = "") -> dict[str, str]:
 def explain(preset: str, **overrides: object) -> str:
     """What a preset simulates, by which models, and what it will cost; `overrides` as in `run`."""
     from lab.preset.find import load
+
+    loaded = load(preset, dotted(overrides))
     from lab.report.explain import explain as explained
 
-    return explained(load(preset, dotted(overrides)))
+    return explained(loaded)
 
 
 def render(

@@ -34,9 +34,13 @@ def run(
     tables of the preset, or single keys with `__` for the dot: `material__friction=0.4`.
     """
     with importing():
+        from lab.preset.find import screen
+
+        given = dotted(overrides, repeats)
+        screen(preset, given)  # before the slow imports
         from lab.runs.runner import run_preset
 
-    return run_preset(preset, dotted(overrides, repeats), out, video=video, plots=plots, quiet=quiet)
+    return run_preset(preset, given, out, video=video, plots=plots, quiet=quiet)
 
 
 def sweep(
@@ -55,9 +59,13 @@ def sweep(
     axes: for each key a range or list as text, as `cargolab sweep` takes it, or a sequence of values; cluster: the
     address of a Dask scheduler whose workers run the points; `repeats` and `overrides` as in `run`.
     """
+    from lab.sweeps.axes import screen_first
+
+    given = dotted(overrides, repeats)
+    screen_first(preset, axes, given)
     from lab.sweeps.sweep import run_sweep
 
-    return run_sweep(preset, axes, dotted(overrides, repeats), out, video=video, quiet=quiet, cluster=cluster)
+    return run_sweep(preset, axes, given, out, video=video, quiet=quiet, cluster=cluster)
 
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:

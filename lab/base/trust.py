@@ -15,7 +15,6 @@ import numpy as np
 
 from lab.base.errors import Unusable
 from lab.base.memory import SHARE, machine_memory
-from solvers.time.kept import told_by
 
 ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
 BEYOND = 1e15  # larger than any SI number in a recording
@@ -114,6 +113,8 @@ def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> Non
 
     The simulation itself refuses invalid indices in its contact lists (`State.write`).
     """
+    from solvers.time.kept import told_by  # loads Taichi, which a recording does not need
+
     numbers = told_by(state)
     room = numbers["room"]
     counts = [number for name, number in numbers.items() if name != "unkicked"]  # that is negative after settling

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import FilePath, out_option, quiet_option, set_option, tell
+from lab.cli.options import FilePath, check_files, check_recording, out_option, quiet_option, set_option, tell
 
 
 @click.command()
@@ -20,9 +20,11 @@ def stability(preset: str, overrides: dict, out: Path | None, quiet: bool) -> No
     cargolab stability ship/handysize-grain --set ship.gravity_height="9.6 m" --out limit
     """
     from lab.preset.find import load
+
+    loaded = load(preset, overrides)
     from lab.report.stability import judge
 
-    text, folder = judge(load(preset, overrides), out)
+    text, folder = judge(loaded, out)
     if not quiet:
         tell(text)
     click.echo(folder)
@@ -97,6 +99,7 @@ def hull(file: Path, out: Path | None, **asked) -> None:
     cargolab hull ship.csv --weights departure.csv --points openings.csv --holds holds.csv --grain grain.csv \\
         --wind 1500 10
     """
+    check_files(file, *(asked[name] for name in ("weights", "points", "holds", "grain")))
     from lab.report.hull import Asked, examine
 
     folder = out or Path("renders/hull") / file.stem
@@ -140,9 +143,11 @@ def hydrodynamics(preset: str, overrides: dict, out: Path | None) -> None:
     cargolab hydrodynamics ship/barge-two-tanks
     """
     from lab.preset.find import load
+
+    loaded = load(preset, overrides)
     from lab.studies.hydrodynamics import compare
 
-    text, folder = compare(load(preset, overrides), out)
+    text, folder = compare(loaded, out)
     tell(text)
     click.echo(folder)
 
@@ -156,6 +161,7 @@ def report(folder: Path, pdf: bool) -> None:
     \b
     cargolab report renders/ship/handysize-grain --pdf
     """
+    check_recording(folder)
     from lab.report.file import write_report
 
     for path in write_report(folder, pdf):

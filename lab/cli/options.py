@@ -19,6 +19,22 @@ class FilePath(click.Path):
         return super().convert(value, param, context)
 
 
+def check_recording(path: Path) -> None:
+    """Raise LabError for a place without a recording, before what works on it is loaded, which takes seconds."""
+    from lab.recording import open_recording
+
+    open_recording(path).close()
+
+
+def check_files(*paths: Path | None) -> None:
+    """Raise LabError for files that cannot be read; None stands for one that is not given."""
+    for path in filter(None, paths):
+        try:
+            path.open("rb").close()
+        except OSError as error:
+            raise LabError(f"{path} cannot be read ({error.strerror}); look at its name.") from None
+
+
 def tell(text: str, err: bool = False) -> None:
     """Print a text, which may hold words of users and files: control codes, which a terminal would obey, become ?."""
     click.echo(printable(text), err=err)

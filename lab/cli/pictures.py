@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from lab.base.errors import LabError
-from lab.cli.options import ColourOption, FilePath, out_option, set_option, tell
+from lab.cli.options import ColourOption, FilePath, check_recording, out_option, set_option, tell
 from lab.preset.units import quoted
 
 
@@ -111,6 +111,7 @@ def render(recordings: tuple[Path, ...], out: Path | None, **wishes: object) -> 
 
 
 def _render_one(recording: Path, out: Path | None, wishes: dict) -> None:
+    check_recording(recording)
     from lab.base.progress import Progress
     from lab.paint.reel.batches import batches_for, paint_batches
     from lab.paint.video import render_recording, target_of
@@ -165,6 +166,7 @@ def poster(recording: Path, out: Path | None, event: bool, **wishes: object) -> 
     cargolab poster renders/ship/capsize-map --theme dark --width 3840 --height 2160
     cargolab poster renders/sloshing/quick --event --inset impact
     """
+    check_recording(recording)
     from lab.paint.video import poster as paint
     from lab.paint.video import telling_time
 
@@ -185,6 +187,7 @@ def sheet(recording: Path, out: Path | None, **wishes: object) -> None:
     cargolab sheet renders/tilting/quick
     cargolab sheet renders/ship/capsize-map --width 1080 --height 1080 --out sheet.png
     """
+    check_recording(recording)
     from lab.paint.video import contact_sheet
 
     click.echo(contact_sheet(recording, out, **wishes))
@@ -207,10 +210,12 @@ def beside(recordings: tuple[Path, ...], out: Path, caption: tuple[str, ...], **
     cargolab beside renders/ship/barge-3dof renders/ship/barge-empty --caption loose --caption empty --out both.mp4
     cargolab beside renders/ship/capsize-map-quick --frozen --out frozen.mp4
     """
-    from lab.paint.video import render_grid
-
     if caption and len(caption) != len(recordings):
         raise LabError(f"--caption: {len(caption)} for {len(recordings)} recordings; give one for each, or none.")
+    for recording in recordings:
+        check_recording(recording)
+    from lab.paint.video import render_grid
+
     alone = len(recordings) == 1 and bool(wishes["frozen"])
     names = caption or ([""] if alone else [path.name for path in recordings])
     click.echo(render_grid(recordings, names, out, **wishes))

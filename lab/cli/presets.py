@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from lab.base.data import PRESETS
 from lab.cli.options import FilePath
 
 
@@ -31,4 +32,8 @@ def schema(page: bool, out: Path | None) -> None:
         click.echo(text, nl=False)
         return
     write_text(out, text)
+    if not page and out.resolve() == (PRESETS / "schema.json").resolve():
+        from lab.preset.kept.written import write_keys
+
+        write_keys()
     click.echo(out if page else f"{out}; a preset beside it names it in its first line: #:schema ./{out.name}")

@@ -10,6 +10,7 @@ from lab.base.errors import LabError
 from lab.cli.options import (
     FilePath,
     arch_option,
+    check_recording,
     out_option,
     quiet_option,
     repeats_option,
@@ -58,6 +59,7 @@ def run(
     if replay is not None:
         if preset is not None or overrides:
             raise LabError("--replay: repeats a recording as it was; leave out the preset and all changes.")
+        check_recording(replay)
         from lab.view.replay import replay as replayed
 
         show(replayed(replay, out, video=not no_video, quiet=quiet), quiet)
@@ -111,6 +113,7 @@ def bed(folder: Path, out: Path | None, world: int, moving: bool) -> None:
     and in a preset:   [grains]            [run]
                        bed = "slid.csv"    settle = false
     """
+    check_recording(folder)
     from lab.runs.bed_file import write_bed
 
     place = out or (folder if folder.is_dir() else folder.parent) / "bed.csv"
@@ -129,6 +132,8 @@ def explain(preset: str, overrides: dict) -> None:
     cargolab explain shaking/sway --set motion.sway.frequency="0.8 Hz"
     """
     from lab.preset.find import load
+
+    loaded = load(preset, overrides)  # before the slow imports, here and in other commands
     from lab.report.explain import explain as explained
 
-    tell(explained(load(preset, overrides)))
+    tell(explained(loaded))

@@ -17,6 +17,7 @@ from lab.cli.options import (
     texts_by_key,
     video_option,
 )
+from lab.sweeps.axes import screen_first
 
 
 @click.command()
@@ -52,10 +53,11 @@ def sweep(
     cargolab sweep shaking/sway --set run.seed=1:200:200 --cluster tcp://node1:8786
     Run again, it continues where it was interrupted.
     """
-    from lab.sweeps.sweep import run_sweep
-
     axes = texts_by_key(settings)
     shortcuts = short_overrides(repeats, arch)
+    screen_first(preset, axes, shortcuts)
+    from lab.sweeps.sweep import run_sweep
+
     show(run_sweep(preset, axes, shortcuts, out, video=not no_video, quiet=quiet, cluster=cluster), quiet)
 
 
@@ -90,7 +92,10 @@ def calibrate(
     cargolab calibrate shaking/sway --target "response_amplitude=2 mm" --vary "motion.sway.frequency=0.8 Hz:2 Hz"
     cargolab calibrate tilting/acetate --target "repose=25 deg" --vary friction=0.2:0.7 --cluster tcp://node1:8786
     """
-    from lab.sweeps.calibrate import calibrate as calibrated
+    from lab.preset.find import screen
 
     overrides |= short_overrides(repeats, arch)
+    screen(preset, overrides)
+    from lab.sweeps.calibrate import calibrate as calibrated
+
     tell(calibrated(preset, target, vary, overrides, out, quiet=quiet, cluster=cluster).text())

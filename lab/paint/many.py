@@ -13,7 +13,6 @@ from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.paint.process import Heard, Painter
 from lab.recording import FILE_NAME
-from solvers.machine.runtime import available_cores
 
 Wishes = Mapping[str, object]  # arguments of `render_recording` by name
 
@@ -110,6 +109,8 @@ class _Studio:
     """The painting processes, one a core, and the jobs that they have in hand."""
 
     def __init__(self, jobs: Sequence[Job], wishes: Wishes, progress: Progress) -> None:
+        from solvers.machine.runtime import available_cores
+
         self._left, self._wishes, self._progress = iter(jobs), wishes, progress
         self._processes = min(available_cores(), len(jobs))
         self._heard: Heard = SimpleQueue()

@@ -10,10 +10,10 @@ import json
 from collections.abc import Mapping
 from typing import Any, get_args, get_origin
 
-from lab.preset.fields import NAME, Table, Taken, defaults_of, taken_of
+from lab.preset.fields import NAME, Table, Taken, defaults_of, marked, taken_of
 from lab.preset.reader import LONGEST_NAME
 from lab.preset.reference import default_of, sentence
-from lab.preset.schema import Preset, marked
+from lab.preset.schema import Preset
 from lab.preset.units import kind
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -115,7 +115,7 @@ def _bounds(taken: Taken) -> dict[str, float]:
 
 def _quick() -> dict:
     """The table of a quick variant: how it differs, and the keys that it may change."""
-    whole, keys = _table(Preset), [key for key in marked("cheap") if NAME not in key.split(".")]
+    whole, keys = _table(Preset), [key for key in marked(Preset, "cheap") if NAME not in key.split(".")]
     table = _picked(whole, [key.split(".") for key in keys])
     table["properties"]["differs"] = {"type": "string", "description": "How the quick variant differs, in a sentence."}
     said = 'Keys that make the preset cheaper, under the name with "-quick" at its end; false: none.'

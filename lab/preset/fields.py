@@ -40,6 +40,7 @@ class Columns:
     needed: tuple[str, ...]
     optional: tuple[str, ...] = ()
     most: int = 1_000_000
+    looked_at: int | None = None  # rows that are read to refuse a wrong file early; None: all, to use them
 
 
 @dataclass(frozen=True)
@@ -154,6 +155,11 @@ def _walk(kind: type, path: str) -> Iterator[tuple[str, Taken]]:
         yield key, taken
         if taken.below:
             yield from _walk(taken.below, join(key, NAME) if taken.named else key)
+
+
+def marked(kind: type, mark: str) -> list[str]:
+    """The dotted keys below a dataclass whose fields have a mark: columns, cheap or alike."""
+    return [key for key, taken in walk(kind) if getattr(taken, mark)]
 
 
 def taken_by(kind: type, dotted: str) -> Taken | None:

@@ -22,7 +22,10 @@ from lab.base.data import FOLDER, PREFIX, PRESETS, data_file
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
 from lab.preset import formats
+from lab.preset.fields import marked
+from lab.preset.kept import read as kept
 from lab.preset.merge import merged, nested
+from lab.preset.reader import check_keys, read
 from lab.preset.units import quoted, shown_path
 
 if TYPE_CHECKING:
@@ -126,23 +129,45 @@ def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPr
 
     Raises LabError: no such preset, a file that cannot be read, or a key that is unknown or wrong.
     """
-    from lab.preset.schema import marked, resolve  # imports the solvers, which the list of presets does not need
+    source, layers, table = _merged(name_or_path, overrides)
+    from lab.preset.schema import resolve  # imports the solvers, which what is refused so far does not need
 
-    source, quick = _find_variant(str(name_or_path))
     try:
-        layers = _layers(source)
-        formats.upgrade([layer.table for layer in layers], source.shown)
-        variant = _quick_variant(source, layers, marked("cheap"))
-        if quick and not variant:
-            raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
-        layers = [*layers, Layer(variant if quick else {}, Path()), Layer(nested(overrides or {}), Path())]
-        resolved = resolve(reduce(merged, (layer.located(marked("columns")) for layer in layers)))
+        resolved = resolve(table)
     except RecursionError:
         raise LabError(f"{source.shown}: nested too deeply.") from None
     based = f"{quoted(resolved.based_on)}, on which it is based, and " if resolved.based_on else ""
     heading = f"# {quoted(source.shown)} with {based}all overrides merged in.\n"
-    name = source.name + (QUICK if quick else "")
-    return LoadedPreset(name, heading + toml.dumps(_written(layers)), resolved)
+    quick = QUICK if _find_variant(str(name_or_path))[1] else ""
+    return LoadedPreset(source.name + quick, heading + toml.dumps(_written(layers)), resolved)
+
+
+def screen(name_or_path: str | Path, overrides: Mapping | None = None) -> None:
+    """Raise LabError for what is wrong with a preset by itself, key by key, without loading the solvers.
+
+    What only several keys make wrong together `load` says, and all of it once the solvers are loaded.
+    """
+    _merged(name_or_path, overrides)
+
+
+def _merged(name_or_path: str | Path, overrides: Mapping | None) -> tuple[Source, list[Layer], dict]:
+    """The file of a preset, its layers, and its keys with those of its bases and overrides. Raises as `load`."""
+    source, quick = _find_variant(str(name_or_path))
+    try:
+        layers = _layers(source)
+        formats.upgrade([layer.table for layer in layers], source.shown)
+        keys = kept.keys()
+        variant = _quick_variant(source, layers, marked(keys, "cheap"))
+        if quick and not variant:
+            raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
+        layers = [*layers, Layer(variant if quick else {}, Path()), Layer(nested(overrides or {}), Path())]
+        table = reduce(merged, (layer.located(marked(keys, "columns")) for layer in layers))
+        if keys is not kept.loaded():
+            check_keys(keys, table)
+            read(keys, table)
+    except RecursionError:
+        raise LabError(f"{source.shown}: nested too deeply.") from None
+    return source, layers, table
 
 
 def _quick_variant(source: Source, layers: list[Layer], cheap: Collection[str]) -> dict:

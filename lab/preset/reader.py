@@ -13,7 +13,6 @@ from unicodedata import category
 from lab.base.errors import LabError
 from lab.base.toml import BARE_KEY
 from lab.preset.fields import NAME, Table, Taken, defaults_of, join, taken_of, walk
-from lab.preset.tables import read_table
 from lab.preset.units import needed, parse, quoted, show
 
 T = TypeVar("T")
@@ -114,8 +113,11 @@ def _value(taken: Taken, raw: object, key: str) -> Any:
 
 def _file(taken: Taken, raw: object, key: str) -> Table:
     """The columns of a file."""
+    from lab.preset.tables import read_table  # with numpy, which few presets need to be read
+
     path = _scalar(replace(taken, kind=str), raw, key)
-    columns = read_table(path, taken.columns.needed, taken.columns.optional, key, taken.columns.most)
+    asked = taken.columns
+    columns = read_table(path, asked.needed, asked.optional, key, asked.most, asked.looked_at)
     return Table(Path(path).name, {name: tuple(values.tolist()) for name, values in columns.items()})
 
 

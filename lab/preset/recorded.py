@@ -9,26 +9,31 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, is_dataclass
 from functools import cache
-
-from pydantic import TypeAdapter, ValidationError
+from typing import TYPE_CHECKING
 
 from lab.base.errors import LabError
 from lab.base.toml import BARE_KEY
 from lab.preset import formats
 from lab.preset.fields import ANY, Table, Taken, taken_of
 from lab.preset.reader import BOUND, check_interval
-from lab.preset.schema import Preset, check
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
+    from lab.preset.schema import Preset
 
 LONGEST_LIST = 1000  # of classes of sizes, of kinds and of shapes
 
 
-def to_table(preset: Preset) -> dict:
+def to_table(preset: "Preset") -> dict:
     """The preset as a table of JSON's kinds of values, all numbers in SI."""
     return json.loads(json.dumps(asdict(preset)))
 
 
-def from_table(table: object) -> Preset:
+def from_table(table: object) -> "Preset":
     """The preset of such a table, also of one from an earlier version. Raises ValueError where it is none."""
+    from pydantic import ValidationError  # slow to load, as the schema is; a recording is opened without both
+
     try:
         kept = formats.recorded(table) if isinstance(table, Mapping) else table
         return _model().validate_json(json.dumps(kept), strict=True)
@@ -39,13 +44,15 @@ def from_table(table: object) -> Preset:
         raise ValueError(str(error)) from error
 
 
-def resolved_from(table: object) -> Preset:
+def resolved_from(table: object) -> "Preset":
     """The preset of such a table, ready to run. Raises ValueError if no valid preset could have given it."""
     return checked(from_table(table))
 
 
-def checked(preset: Preset) -> Preset:
+def checked(preset: "Preset") -> "Preset":
     """The preset. Raises ValueError if no table that a person may write could have given it."""
+    from lab.preset.schema import check
+
     try:
         _check_numbers(preset)
         check(preset)
@@ -55,13 +62,17 @@ def checked(preset: Preset) -> Preset:
 
 
 @cache
-def _model() -> TypeAdapter:
+def _model() -> "TypeAdapter":
+    from pydantic import TypeAdapter
+
+    from lab.preset.schema import Preset
+
     return TypeAdapter(Preset)
 
 
-def _check_numbers(preset: Preset) -> None:
+def _check_numbers(preset: "Preset") -> None:
     """Raise LabError for a number out of its range, a list that is too long, or a name that is none."""
-    for key, taken, value in _values(preset, "", Taken(Preset)):
+    for key, taken, value in _values(preset, "", Taken(type(preset))):
         if isinstance(value, int | float):
             if not math.isfinite(value) or abs(value) > BOUND:
                 raise LabError(f"{key}: is beyond all measure.")

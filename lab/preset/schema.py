@@ -12,9 +12,13 @@ from typing import Annotated
 
 import numpy as np
 
+from solvers.machine import runtime  # noqa: F401 (first, since it loads Taichi faster)
+
+# isort: split
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS, stiffness_for
 from lab.preset.fields import Of, defaults_of, join, walk
+from lab.preset.kept.content import MATTERS
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
 from lab.preset.sections.axle import Axle, check_axle
@@ -47,7 +51,6 @@ from solvers.tank.tank import BARE_THICKNESS
 from solvers.tank.tank import Tank as SlabTank
 
 FORMAT = 3
-MATTERS = ("grains", "water", "air")  # the keys of the matters that a tank may hold; air is water's second phase
 
 
 @dataclass(frozen=True)
@@ -217,11 +220,6 @@ def check(preset: Preset) -> None:
         check_solids(preset)
     check_stability(preset.stability, preset.ship)
     check_video(preset.video, preset.matters)
-
-
-def marked(mark: str) -> list[str]:
-    """The dotted keys whose fields have a mark: columns, cheap or alike."""
-    return [key for key, taken in walk(Preset) if getattr(taken, mark)]
 
 
 def value_at(preset: Preset, dotted: str) -> object:

@@ -21,29 +21,37 @@ Line = tuple[int, list[str]]
 
 
 def read_table(
-    path: str, needed: Sequence[str], optional: Sequence[str] = (), key: str = "", most: int = 1_000_000
+    path: str,
+    needed: Sequence[str],
+    optional: Sequence[str] = (),
+    key: str = "",
+    most: int = 1_000_000,
+    looked_at: int | None = None,
 ) -> dict[str, np.ndarray]:
     """Columns (rows,) of a CSV file by name, in the file's order: all `needed` ones and any of the `optional` ones.
     "*" among these is for columns of any name.
 
     The first line names the columns; cells are separated by commas, or by semicolons if the first line has any. Blank
-    lines and lines that begin with # are skipped. Raises LabError, one sentence that begins with the preset's `key`,
-    the file and the line, for anything but such a table of finite numbers, and for more than `most` rows.
+    lines and lines that begin with # are skipped. looked_at: read so many rows alone. Raises LabError, one sentence
+    that begins with the preset's `key`, the file and the line, for anything but such a table of finite numbers, and for
+    more than `most` rows.
     """
     try:
-        return _columns(_text(path), needed, optional, most)
+        return _columns(_text(path), needed, optional, most, looked_at)
     except LabError as error:
         raise LabError(f"{f'{key}: ' if key else ''}{shown_path(path)}{error}") from None
 
 
-def _columns(text: str, needed: Sequence[str], optional: Sequence[str], most: int) -> dict[str, np.ndarray]:
+def _columns(
+    text: str, needed: Sequence[str], optional: Sequence[str], most: int, looked_at: int | None
+) -> dict[str, np.ndarray]:
     lines = _lines(text)
     number, names = next(lines, (0, []))
     if not names:
         raise LabError(f": empty; a first line with the columns {', '.join(needed)} is needed.")
     _check_names(names, needed, optional, number)
-    rows = [_numbers(line, names) for line in islice(lines, most)]
-    if next(lines, None):
+    rows = [_numbers(line, names) for line in islice(lines, most if looked_at is None else looked_at)]
+    if looked_at is None and next(lines, None):
         raise LabError(f": more than {most} rows.")
     if not rows:
         raise LabError(": has no numbers below its column names.")

@@ -71,16 +71,7 @@ KINDS = {
     "m^2/s": Kind("a kinematic viscosity", "m^2/s", "1e-6 m^2/s"),
     "N s/m": Kind("a damping coefficient", "N s/m", "20 N s/m"),
 }
-MEASURED = {
-    "deg": "rad",
-    "mm": "m",
-    "mN": "N",
-    "µJ": "J",
-    "Hz": "Hz",
-    "s": "s",
-    "Pa": "Pa",
-    "%": "1",
-}  # units of measures
+MEASURED = {"deg": "rad", "mm": "m", "mN": "N", "µJ": "J", "Hz": "Hz", "s": "s", "Pa": "Pa", "%": "1"}  # of measures
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 # Units shown with a prefix, and the smallest power of ten of that prefix.
 PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}
@@ -115,6 +106,10 @@ USUAL = {
     ("GPa", "Pa"): 1e9,
     ("m^3/t", "m^3/kg"): 1e-3,
 }
+SAME = {"1/s": "Hz"}  # SI units of one dimension
+# The SI unit of a unit as it is written, of those that a message names without asking Pint
+SYMBOLS = {unit: SAME.get(symbol, symbol) for unit, symbol in [*USUAL, *zip(KINDS, KINDS, strict=True)]}
+SYMBOLS = {unit: symbol for unit, symbol in SYMBOLS.items() if unit not in ("", "1")}
 _factors: dict[tuple[str, str], float] = dict(USUAL)
 QUOTED = 40  # characters of a user's text that an error quotes
 LONGEST_PATH = 100  # characters of a path that an error quotes
@@ -217,6 +212,9 @@ def _factor(unit: str, value: str, symbol: str) -> float:
         return _factors[unit, symbol]
     if not unit and symbol != "1":
         raise LabError(f"{quoted(value)} has no unit; {needed(symbol)}.")
+    told = SYMBOLS.get(unit)
+    if told and told != SAME.get(symbol, symbol):
+        raise LabError(f"{_wrong_kind(value, KINDS[told].name, symbol)}.")
     given = _unit(unit, value, symbol)
     if given.dimensionality != _si(symbol).dimensionality:
         raise LabError(f"{_mismatch(value, given, symbol)}.")
@@ -260,8 +258,12 @@ def _named(name: str):
 
 
 def _mismatch(value: str, given, symbol: str) -> str:
-    name, unit, example = kind(symbol)
     what = next((k.name for s, k in KINDS.items() if _si(s).dimensionality == given.dimensionality), None)
+    return _wrong_kind(value, what, symbol)
+
+
+def _wrong_kind(value: str, what: str | None, symbol: str) -> str:
+    name, unit, example = kind(symbol)
     is_what = f"is {what}" if what else "is of another kind"
     if symbol == "1":
         return f"{quoted(value)} {is_what}, but {needed(symbol)}"

@@ -4,13 +4,13 @@ A table is a group of data sets that grow together, one row at a time. The group
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
 
 from lab.base.trust import attribute_words
-from lab.preset.schema import MATTERS, Preset
-from lab.preset.sections.water.liquid import parted
+from lab.preset.kept.content import MATTERS, Content, parted
 from lab.recording.outlines import GROUP as SHAPES
 from solvers.fluid import quantities as water
 from solvers.fluid.phases import quantities as air
@@ -18,6 +18,9 @@ from solvers.grains import quantities as grains
 from solvers.machine.quantity import OWNERS, Quantity
 from solvers.ship import quantities as ship
 from solvers.tank import quantities as tank
+
+if TYPE_CHECKING:
+    from lab.preset.schema import Preset
 
 # Some attributes are not read by `Recording`; they inform people who open the file with other programs: `pose_is_of`,
 # the reference point of pose and pose_rate; for a ship `ship_axis` and `ship_axis_in_tank`, y, z (m) of the roll axis
@@ -68,7 +71,7 @@ def frames_of(swell: bool = False, matters: Collection[str] = MATTERS) -> tuple[
     return (TIME, *tank.FRAMES, *((WAVES,) if swell else ()), *of_matters)
 
 
-def tables_of(preset: Preset, steered: bool) -> dict[str, tuple[Quantity, ...]]:
+def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
     afloat, matters, names = bool(preset.ship), preset.matters, names_of(preset)
     whole = series_of(afloat, matters, bool(preset.axle))
@@ -77,7 +80,7 @@ def tables_of(preset: Preset, steered: bool) -> dict[str, tuple[Quantity, ...]]:
     return tables | ({"steering": STEERING} if steered else {})
 
 
-def names_of(preset: Preset, parts: Iterable[str] = ()) -> dict[str, list[str]]:
+def names_of(preset: "Preset | Content", parts: Iterable[str] = ()) -> dict[str, list[str]]:
     """The names of a preset's gauges of pressure, level and force, and of parts, by the owners of their quantities.
 
     They are in the order of the columns of these quantities.

@@ -3,13 +3,15 @@
 import os
 import platform
 from importlib import metadata
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lab import __version__
-from lab.preset.schema import Preset
-from lab.preset.sections.ship import axis_place
 from lab.recording.layout import fixed_text
+
+if TYPE_CHECKING:
+    from lab.preset.schema import Preset
 
 PACKAGES = ("taichi", "numpy", "scipy", "h5py")
 
@@ -25,10 +27,12 @@ def versions() -> dict[str, str]:
     return found
 
 
-def reference_points(preset: Preset) -> dict[str, object]:
+def reference_points(preset: "Preset") -> dict[str, object]:
     """Attributes on the reference point of the poses and, for a ship, of sway and heave (see `axis_motion`)."""
     found = {"pose_is_of": fixed_text("the origin of the tank's axes")}
     if ship := preset.ship:
+        from lab.preset.sections.ship import axis_place
+
         found["ship_axis"] = np.array(ship.about)
         found["ship_axis_in_tank"] = np.subtract(ship.about, ship.hold)
         found["sway_and_heave_are_of"] = fixed_text(f"the ship's axis, {axis_place(ship)}")

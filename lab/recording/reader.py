@@ -2,6 +2,7 @@
 
 import json
 from contextlib import ExitStack
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND, attributes, check_recording, format_of, text
-from lab.preset.recorded import from_table
+from lab.preset.kept.recorded import content
 from lab.recording import older
 from lab.recording.checks import Checks
 from lab.recording.layout import (
@@ -35,6 +36,8 @@ from solvers.machine.quantity import Quantity
 if TYPE_CHECKING:
     import xarray
 
+    from lab.preset.schema import Preset
+
 SIZES = {
     "world": 2,
     "grain": 3,
@@ -51,7 +54,8 @@ TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 class Recording:
     """A recording opened for reading, a context manager; arrays are read on demand.
 
-    path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI;
+    path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI; content: what of it the
+    tables follow from;
     status, created, versions, machine, step (s), wall_s, grain_steps;
     radius (W, n) m, n is 0 without grains; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
     volume (W, n) m² of the particles of water in the plane, air_volume (W, n) of those of air, n is 0 without any;
@@ -83,13 +87,14 @@ class Recording:
             self.step, self.wall_s = float(stored["step"]), float(stored["wall_s"])
             self.grain_steps = int(stored["grain_steps"])
             self.given = self._stored("preset/given", text)
-            self.preset = from_table(json.loads(self._stored("preset/resolved", text)))
+            self._resolved = json.loads(self._stored("preset/resolved", text))
+            self.content = content(self._resolved)
             self.radius, self.kind = self._grains()
             self.volume, self.air_volume = self._volumes("water"), self._volumes("air")
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
             self.parts = {name: self._stored(f"{PARTS}/{name}") for name in self._file[PARTS]}
-            self.names = names_of(self.preset, self.parts)
+            self.names = names_of(self.content, self.parts)
             shaped = GROUP in self._file
             self.shapes = (
                 read_outlines({name: self._stored(f"{GROUP}/{name}") for name in OF_SHAPES}) if shaped else None
@@ -115,14 +120,14 @@ class Recording:
 
     def _grains(self) -> tuple[np.ndarray, np.ndarray]:
         """Radii (W, n), m, and kinds (W, n) of the grains; n is 0 without grains."""
-        if "grains" in self.preset.matters:
+        if "grains" in self.content.matters:
             return self._stored("grains/radius"), self._stored("grains/kind")
-        none = self.preset.run.repeats, 0
+        none = self.content.repeats, 0
         return np.zeros(none), np.zeros(none, dtype=np.uint8)
 
     def _volumes(self, phase: str) -> np.ndarray:
         """Volumes (W, n), m², of the particles of water or air; n is 0 without it."""
-        if phase in self.preset.matters:
+        if phase in self.content.matters:
             return self._stored(f"{phase}/volume")
         return np.zeros((len(self.radius), 0))
 
@@ -130,7 +135,7 @@ class Recording:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
         is_older = older.is_older(self.form)
         sizes = sizes_of(self.names, self.radius, self.volume, self.air_volume)
-        wanted = tables_of(self.preset, "steering" in self._file)
+        wanted = tables_of(self.content, "steering" in self._file)
         found = {}
         for name, known in wanted.items():
             group, checks = self._file[name], None
@@ -144,13 +149,13 @@ class Recording:
 
     def _check_contents(self) -> None:
         """Raise ValueError if something is not as a Recorder writes it."""
-        worlds_and_grains, some = self.radius.shape, "grains" in self.preset.matters
-        wet = "water" in self.preset.matters
+        worlds_and_grains, some = self.radius.shape, "grains" in self.content.matters
+        wet = "water" in self.content.matters
         sound = {
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
             "attribute versions": _of_texts(self.versions),
             "attribute machine": isinstance(self.machine, dict),
-            "preset/resolved": some == (self.preset.material is not None),
+            "preset/resolved": some == self.content.material,
             "grains/radius": _finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
             "water/volume": _finite(self.volume, 2) and (self.volume.size > 0) == wet and (self.volume > 0.0).all(),
             "air/volume": _finite(self.air_volume, 2) and (self.air_volume > 0.0).all(),
@@ -165,6 +170,14 @@ class Recording:
         for name, is_sound in sound.items():
             if not is_sound:
                 raise ValueError(f"{name} is not what the lab writes there")
+
+    @cached_property
+    def preset(self) -> "Preset":
+        """The preset, with what follows from its keys. Raises Unusable if it is none."""
+        from lab.preset.recorded import from_table  # loads the solvers, which arrays do not need
+
+        with reading(self.path):
+            return from_table(self._resolved)
 
     @property
     def version(self) -> str:

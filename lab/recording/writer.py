@@ -16,8 +16,7 @@ import numpy as np
 from lab.base.errors import LabError, Unusable
 from lab.base.files import replacing
 from lab.base.trust import attribute_words, format_of
-from lab.preset.recorded import to_table
-from lab.preset.schema import Preset
+from lab.preset import recorded
 from lab.recording.checks import Checks, row_checks
 from lab.recording.layout import (
     CHECKS,
@@ -50,7 +49,7 @@ def new_recording(
     *,
     preset: str,
     given: str,
-    resolved: Preset,
+    resolved: "recorded.Preset",
     radius: np.ndarray,
     outline: np.ndarray,
     step: float,
@@ -98,7 +97,7 @@ def new_recording(
             _reserve(file, radius.nbytes + sum(table.nbytes for table in tables.values()) + len(given) + SPARE_BYTES)
             file.attrs.update(attributes)
             store(file, "preset/given", fixed_text(given)[None])
-            store(file, "preset/resolved", fixed_text(json.dumps(to_table(resolved)))[None])
+            store(file, "preset/resolved", fixed_text(json.dumps(recorded.to_table(resolved)))[None])
             if radius.size:
                 store(file, "grains/radius", radius)
                 kind = np.zeros(radius.shape) if kind is None else kind

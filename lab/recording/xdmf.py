@@ -49,7 +49,7 @@ def _lines(recording: Recording) -> Iterator[str]:
     for world in range(recording.worlds):
         yield f'<Grid Name="bed {world}" GridType="Collection" CollectionType="Temporal">\n'
         for frame, time in enumerate(times):
-            for matter in filter(OF_MATTERS.get, recording.preset.matters):
+            for matter in filter(OF_MATTERS.get, recording.content.matters):
                 grid = _points(recording, matter, (frame, world), float(time))
                 Xml.indent(grid)
                 yield Xml.tostring(grid, encoding="unicode") + "\n"

@@ -20,8 +20,9 @@ from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
 from lab.base.trust import check_state
+from lab.preset.fields import marked
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Preset, marked, value_at
+from lab.preset.schema import Preset, value_at
 from lab.preset.units import show
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
 from lab.runs.beds import settled, settling
@@ -57,7 +58,7 @@ class Run:
     def shared(self) -> tuple:
         """The values that must be equal for two runs to share a batch."""
         preset = self.loaded.resolved
-        alike = tuple(value_at(preset, key) for key in marked("alike"))
+        alike = tuple(value_at(preset, key) for key in marked(Preset, "alike"))
         return self.scene.shared(), settling(preset), preset.duration, alike
 
     @property

@@ -2,10 +2,12 @@
 
 import re
 import tomllib
-
-import numpy as np
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from pathlib import Path
 
 from lab.base.errors import LabError
+from lab.preset.find import screen
 
 NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 UNIT = r"[^\W\d_%°][^:,]*|%|°"  # a unit may follow each number, the count, or the word
@@ -27,6 +29,21 @@ def values(key: str, text: str) -> list[object]:
     return _with_last_unit(_listed(text))
 
 
+def screen_first(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None) -> None:
+    """Raise LabError for what is wrong with the keys of a sweep's first point, without loading the solvers."""
+    first = {key: (values(key, given) if isinstance(given, str) else given)[:1] for key, given in axes.items()}
+    setting = {key: found[0] for key, found in first.items() if len(found)}
+    try:
+        screen(name, {**(overrides or {}), **setting})
+    except LabError as error:
+        raise LabError(point_fails(setting, error)) from None
+
+
+def point_fails(setting: Mapping[str, object], error: LabError) -> str:
+    """The sentence on a point of a sweep that is no preset."""
+    return f"point {', '.join(f'{key} = {value}' for key, value in setting.items())}: {error}"
+
+
 def plain(text: str) -> object:
     """One value: TOML, or a text such as 4 mm, which needs no quotes here."""
     listed = _toml(text)
@@ -40,10 +57,12 @@ def _range(key: str, first: str, unit: str, last: str, other: str, count: str, l
     start, stop, number = float(first), float(last), int(count)
     if not 2 <= number <= MOST:
         raise LabError(f"{key}: a range has 2 to {MOST} values (got {number}).")
-    if not (np.isfinite([start, stop]).all() and start != stop):
+    if not (isfinite(start) and isfinite(stop) and start != stop):
         raise LabError(f"{key}: the ends of a range must be two different numbers (got {first} and {last}).")
     if log and not start * stop > 0:
         raise LabError(f"{key}: a logarithmic range cannot reach or cross zero (got {first} to {last}).")
+    import numpy as np  # not for single values, which every command may take
+
     numbers = (np.geomspace if log else np.linspace)(start, stop, number)
     rounded = [float(f"{x:.12g}") for x in numbers]  # 0.3, not 0.30000000000000004
     if units:

@@ -16,10 +16,10 @@ from lab.base.files import write_text
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import resolved_from, to_table
 from lab.runs.alike import alike, apart
-from lab.sweeps.axes import values
+from lab.sweeps.axes import point_fails, values
+from lab.sweeps.request import SWEEP as FILE_NAME
 
 FORMAT = "cargo-shift-lab sweep 1"
-FILE_NAME = "sweep.json"
 MOST_POINTS = 100_000
 
 
@@ -87,8 +87,7 @@ def define_sweep(name: str | Path, axes: Mapping[str, str | Sequence], overrides
         try:
             points.append(load(name, {**(overrides or {}), **fixed, **setting}))
         except LabError as error:
-            where = ", ".join(f"{key} = {value}" for key, value in setting.items())
-            raise LabError(f"point {where}: {error}") from None
+            raise LabError(point_fails(setting, error)) from None
     return Sweep(points[0].name, swept, points)
 
 

@@ -9,6 +9,7 @@ from lab.base.files import write_text
 
 FORMAT = "cargo-shift-lab calibration 1"
 FILE_NAME = "asked.json"  # marks a folder as that of a calibration
+SWEEP = "sweep.json"  # as that of a sweep
 
 
 @dataclass(frozen=True)

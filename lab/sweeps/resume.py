@@ -3,11 +3,12 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lab.runs.runner import Result, resume_run
-from lab.sweeps.grid import FILE_NAME as SWEEP
+from lab.recording import open_recording
 from lab.sweeps.request import FILE_NAME as CALIBRATION
+from lab.sweeps.request import SWEEP
 
 if TYPE_CHECKING:
+    from lab.runs.runner import Result
     from lab.sweeps.calibration_report import Calibration
     from lab.sweeps.sweep import SweepResult
 
@@ -25,4 +26,7 @@ def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -
         from lab.sweeps.sweep import resume_sweep
 
         return resume_sweep(folder, video=video, quiet=quiet)
+    open_recording(folder).close()  # before the slow imports, so that another folder is refused at once
+    from lab.runs.runner import resume_run
+
     return resume_run(folder, video=video, quiet=quiet)

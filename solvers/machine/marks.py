@@ -9,8 +9,6 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
 from typing import Any, get_type_hints
 
-import numpy as np
-
 
 @dataclass(frozen=True)
 class Doc:
@@ -86,6 +84,8 @@ def shared(value: object) -> Hashable:
 
     Of a dataclass that is all of each field without a mark, and what those of `EachWorld` agree in.
     """
+    import numpy as np  # not for marks alone, which are read before anything is computed
+
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     if isinstance(value, tuple | list):
@@ -122,6 +122,8 @@ def joined(values: list) -> object:
 
     Arrays and lists have an entry a world; of a dataclass, its arrays have.
     """
+    import numpy as np
+
     first = values[0]
     if first is None:
         return None

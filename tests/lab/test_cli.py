@@ -208,6 +208,7 @@ def test_a_bug_is_not_hidden(monkeypatch):
 
 
 def test_render_passes_on_all_options(monkeypatch):
+    monkeypatch.setattr("lab.cli.pictures.check_recording", lambda _: None)
     monkeypatch.setattr("lab.paint.reel.batches.batches_for", lambda *_: 1)
     calls = stand_in(monkeypatch, "lab.paint.video", "render_recording", Path("out.mp4"))
     sys.modules["lab.paint.video"].target_of = lambda path, out, png: out or path
@@ -226,6 +227,7 @@ def test_render_passes_on_all_options(monkeypatch):
 
 
 def test_poster_sheet_and_beside_pass_on_their_options(monkeypatch):
+    monkeypatch.setattr("lab.cli.pictures.check_recording", lambda _: None)
     painted, fake = {}, ModuleType("lab.paint.video")
     made = {"poster": "p.png", "contact_sheet": "s.png", "render_grid": "b.mp4", "telling_time": 2.5}
     for name, act in made.items():

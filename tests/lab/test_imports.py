@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.oracles.synthetic import recorder
+
 SLOW = ("scipy", "matplotlib", "PIL", "imageio_ffmpeg", "xarray", "jinja2", "pint")
 CALLED = """
 from lab.cli import main
@@ -57,6 +59,31 @@ def test_the_first_message_of_a_run_waits_for_no_slow_imports_once_its_collision
 
 def test_a_preset_is_explained_without_slow_imports_once_its_collisions_are_known(explained):
     assert loaded_by(explained) == []
+
+
+LATE = ("taichi", "pint", "pydantic", "lab.preset.schema", "xarray", "matplotlib")
+REFUSED = {
+    "unknown key": ["run", "tilting/quick", "--set", "grains.diamter=3 mm"],
+    "unit": ["explain", "tilting/quick", "--set", "grains.diameter=3 kg"],
+    "point of a sweep": ["sweep", "tilting/quick", "--set", "run.sed=1,2"],
+    "file of a preset": ["stability", "absent.toml"],
+    "folder of a run": ["resume", "absent"],
+    "recording": ["render", "absent.h5"],
+    "offsets": ["hull", "absent.csv"],
+}
+CURRENT = "from lab.preset.kept import read\nread.is_current = lambda: True  # also while the code is being changed\n"
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_is_refused_loads_neither_taichi_nor_the_schema(what):
+    assert loaded_by(CURRENT + CALLED.format(words=REFUSED[what]), LATE) == []
+
+
+def test_python_refuses_and_opens_recordings_without_taichi_and_the_schema(tmp_path):
+    recorder(tmp_path).close("complete")
+    refused = "import cargolab\ntry: cargolab.run('tilting/quick', grains__diamter='3 mm')\nexcept Exception: pass\n"
+    opened = f"with cargolab.open({str(tmp_path)!r}) as run: run.series['time'], run.frames['position']\n"
+    assert loaded_by(CURRENT + refused + opened, LATE) == []
 
 
 def test_taichi_is_loaded_without_a_search_through_all_modules_for_each_of_its_functions():

@@ -15,6 +15,9 @@ A law is a class with
 Only the laws that a scene uses are compiled.
 """
 
+from solvers.machine import runtime  # noqa: F401 (it changes how Taichi declares the functions of this package)
+
+# isort: split
 from solvers.grains.laws.bridge import Bridge
 from solvers.grains.laws.constant_torque import ConstantTorque
 from solvers.grains.laws.coulomb import Coulomb

@@ -136,3 +136,18 @@ def test_near_quantities_give_only_lab_errors(text):
 def test_the_factors_of_usual_units_are_those_that_pint_finds(unit, symbol, monkeypatch):
     monkeypatch.setattr(units, "_factors", {})
     assert units._factor(unit, unit, symbol) == USUAL[unit, symbol]
+
+
+def refused(unit, symbol):
+    try:
+        parse(f"3 {unit}", symbol)
+    except LabError as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize("unit", units.SYMBOLS)
+def test_a_wrong_kind_of_unit_is_said_in_the_words_that_pint_gives(unit, monkeypatch):
+    found = {symbol: refused(unit, symbol) for symbol in KINDS}
+    monkeypatch.setattr(units, "SYMBOLS", {})
+    assert found == {symbol: refused(unit, symbol) for symbol in KINDS}

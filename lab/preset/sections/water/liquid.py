@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from lab.preset.accuracy import LEVELS
+from lab.preset.kept.content import parted
 from lab.preset.sections.motion import MotionGroup
 from lab.preset.sections.parts import PartGroup
 from lab.preset.sections.run import Run
@@ -115,13 +116,6 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
 def interface(preset: Wet) -> str:
     """What acts between water and air, by name: the preset's own, or that of its scheme."""
     return preset.air.interface or SCHEMES[preset.water.scheme].interface
-
-
-def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge], dict[str, Gauge]]:
-    """The gauges of pressure, of level and of force by their names, each in the order of their numbers."""
-    kinds = "pressure", "level", "force"
-    pressure, level, force = ({name: gauge for name, gauge in gauges.items() if gauge.kind == kind} for kind in kinds)
-    return pressure, level, force
 
 
 def _edge(gauge: Gauge, tank: Tank) -> int:

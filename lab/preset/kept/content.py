@@ -1,0 +1,33 @@
+"""The matters and gauges of a preset, by which the tables of a recording are laid out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple, TypeVar
+
+MATTERS = ("grains", "water", "air")  # the keys of the matters that a tank may hold; air is water's second phase
+KINDS_OF_GAUGES = "pressure", "level", "force"
+
+G = TypeVar("G")
+
+
+class Gauge(NamedTuple):
+    """A gauge of what kind."""
+
+    kind: str
+
+
+@dataclass(frozen=True)
+class Content:
+    """What of a preset the tables of its recording follow from, under the names that a preset has for it."""
+
+    matters: tuple[str, ...]
+    material: bool
+    ship: bool
+    axle: bool
+    gauges: dict[str, Gauge]
+    repeats: int
+
+
+def parted(gauges: Mapping[str, G]) -> tuple[dict[str, G], ...]:
+    """The gauges of pressure, of level and of force by their names, each in the order of their numbers."""
+    return tuple({name: one for name, one in gauges.items() if one.kind == kind} for kind in KINDS_OF_GAUGES)

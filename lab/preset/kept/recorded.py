@@ -1,0 +1,77 @@
+"""What a recorded preset holds, and whether it can be one; the preset itself is made by `lab.preset.recorded`."""
+
+from collections.abc import Mapping
+from typing import Any, get_args, get_origin
+
+from lab.preset import formats
+from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
+from lab.preset.kept.content import KINDS_OF_GAUGES, MATTERS, Content, Gauge
+from lab.preset.kept.read import keys
+
+
+def content(table: object) -> Content:
+    """The content of a recorded preset. Raises ValueError where it is none, as far as types and words tell."""
+    try:
+        kept = formats.recorded(table) if isinstance(table, Mapping) else table
+        _check(Taken(keys()), kept, "")
+    except (RecursionError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(str(error)) from error
+    gauges = {name: Gauge(gauge.get("kind", KINDS_OF_GAUGES[0])) for name, gauge in kept.get("gauges", {}).items()}
+    has = {name: kept.get(name) is not None for name in (*MATTERS, "material", "ship", "axle")}
+    repeats = kept.get("run", {}).get("repeats", 1)
+    matters = tuple(name for name in MATTERS if has[name])
+    return Content(matters, has["material"], has["ship"], has["axle"], gauges, repeats)
+
+
+def _check(taken: Taken, value: object, key: str) -> None:
+    """Raise ValueError where a value in SI is of another type than its key takes."""
+    if (value is None and taken.optional) or (isinstance(value, str) and value in taken.words):
+        return
+    if taken.below or taken.kind is Table:
+        _check_table(taken, value, key)
+    elif get_origin(taken.kind) is tuple:
+        _check_list(taken, value, key)
+    elif not _is(taken.kind, value):
+        raise ValueError(f"{key}: another kind of value is needed")
+
+
+def _check_table(taken: Taken, value: object, key: str) -> None:
+    if not isinstance(value, Mapping):
+        raise ValueError(f"{key or 'the preset'}: a table is needed")
+    if taken.kind is Table:
+        _check(Taken(str), value.get("name"), join(key, "name"))
+        for name, column in _mapping(value.get("columns"), key).items():
+            _check(Taken(tuple[float, ...]), column, join(key, name))
+    elif taken.named:
+        for name, inner in value.items():
+            _check(Taken(taken.named), inner, join(key, name))
+    else:
+        for name, inner in taken_of(taken.table).items():
+            if name in value:
+                _check(inner, value[name], join(key, name))
+            elif name not in defaults_of(taken.table):
+                raise ValueError(f"{join(key, name)}: is missing")
+
+
+def _mapping(value: object, key: str) -> Mapping:
+    if not isinstance(value, Mapping):
+        raise ValueError(f"{key}: columns are needed")
+    return value
+
+
+def _check_list(taken: Taken, value: object, key: str) -> None:
+    parts: tuple[Any, ...] = get_args(taken.kind)
+    many = parts[-1] is Ellipsis
+    if not isinstance(value, list | tuple) or (not many and len(value) != len(parts)):
+        raise ValueError(f"{key}: another kind of list is needed")
+    kinds = parts[:1] * len(value) if many else parts
+    one = [taken.item(kind) for kind in kinds[: 1 if many else None]]
+    for place, inner in enumerate(value):
+        _check(one[0] if many else one[place], inner, f"{key}[{place}]")
+
+
+def _is(kind: type | None, value: object) -> bool:
+    """Whether a value is of a plain type; whole numbers are numbers, true and false are none."""
+    if isinstance(value, bool) or kind is bool:
+        return kind is bool and isinstance(value, bool)
+    return kind is not None and isinstance(value, int | float if kind is float else kind)

@@ -1,0 +1,53 @@
+"""Write what the schema says of its keys to `keys.json`; `lab.preset.kept.read` is its other half."""
+
+import json
+from dataclasses import fields
+from typing import get_args, get_origin
+
+from lab.preset.fields import Taken, defaults_of, taken_of
+from lab.preset.kept.read import FILE, PLAIN
+from lab.preset.schema import Preset
+
+NAMES = {kind: name for name, kind in PLAIN.items()}
+
+
+def text_of_keys(preset: type = Preset) -> str:
+    """The content of the file."""
+    return json.dumps(_table(preset), ensure_ascii=False, separators=(",", ":")).replace('},"', '},\n"') + "\n"
+
+
+def write_keys() -> None:
+    """Write the file."""
+    FILE.write_text(text_of_keys(), encoding="utf-8")
+
+
+def _table(kind: type) -> dict:
+    """What each key of a table takes; those that must be given have no `default`."""
+    optional = {"default": True}
+    return {name: _taken(one) | (optional if name in defaults_of(kind) else {}) for name, one in taken_of(kind).items()}
+
+
+def _taken(taken: Taken) -> dict:
+    """What a key takes: all of its `Taken` that is not as in one that says nothing."""
+    found = {"kind": _kind(taken)} if taken.kind is not None else {}
+    limits = {name: bound for name, bound in vars(taken.interval).items() if bound is not None}
+    found |= {"interval": limits} if limits else {}
+    found |= {"usual": [*vars(taken.usual).values()]} if taken.usual else {}
+    found |= {"columns": [taken.columns.needed, taken.columns.optional, taken.columns.most]} if taken.columns else {}
+    for field in fields(Taken):
+        value = getattr(taken, field.name)
+        if field.name not in ("kind", "interval", "usual", "columns") and value != field.default:
+            found[field.name] = value
+    return found
+
+
+def _kind(taken: Taken) -> object:
+    """The type of a value: a name, a table of keys, tables that users name, or the items of a list."""
+    if taken.table:
+        return {"keys": _table(taken.table)}
+    if taken.named:
+        return {"named": _table(taken.named)}
+    if get_origin(taken.kind) is tuple:
+        parts = get_args(taken.kind)
+        return {"items": [_taken(taken.item(part)) for part in parts if part is not ...], "many": parts[-1] is ...}
+    return NAMES[taken.kind]
