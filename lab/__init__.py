@@ -11,6 +11,7 @@ from lab.base.costs import importing
 
 if TYPE_CHECKING:
     from lab.runs.runner import Result
+    from lab.sweeps.calibration_report import Calibration
     from lab.sweeps.sweep import SweepResult
 
 __version__ = "0.2.0"
@@ -50,6 +51,7 @@ def sweep(
     *,
     repeats: int | None = None,
     video: bool = True,
+    plots: bool = True,
     quiet: bool = False,
     cluster: str | None = None,
     **overrides: object,
@@ -57,7 +59,7 @@ def sweep(
     """Run a preset at every combination of values: `lab.sweep("shaking/sway", {"motion.sway.frequency": "0.5:2:7Hz"})`.
 
     axes: for each key a range or list as text, as `cargolab sweep` takes it, or a sequence of values; cluster: the
-    address of a Dask scheduler whose workers run the points; `repeats` and `overrides` as in `run`.
+    address of a Dask scheduler whose workers run the points; the other options as in `run`.
     """
     from lab.sweeps.axes import screen_first
 
@@ -65,15 +67,17 @@ def sweep(
     screen_first(preset, axes, given)
     from lab.sweeps.sweep import run_sweep
 
-    return run_sweep(preset, axes, given, out, video=video, quiet=quiet, cluster=cluster)
+    return run_sweep(preset, axes, given, out, video=video, plots=plots, quiet=quiet, cluster=cluster)
 
 
-def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
-    """Continue the run or sweep in a folder that was killed, interrupted or stopped; the result has the same bits."""
+def resume(
+    folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False
+) -> Result | SweepResult | Calibration:
+    """Continue the run, sweep or calibration in a folder that was interrupted or killed; the bits are the same."""
     with importing():
         from lab.sweeps.resume import resume_any
 
-    return resume_any(folder, video=video, quiet=quiet)
+    return resume_any(folder, video=video, plots=plots, quiet=quiet)
 
 
 def dotted(overrides: Mapping[str, object], repeats: int | None = None) -> dict[str, object]:

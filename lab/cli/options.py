@@ -95,6 +95,7 @@ cluster_option = click.option(
     "--cluster", metavar="ADDRESS", help="Run on the workers of this Dask scheduler, e.g. tcp://node1:8786."
 )
 video_option = click.option("--no-video", is_flag=True, help="Do not paint a video.")
+plots_option = click.option("--no-plots", is_flag=True, help="Do not draw figures.")
 
 
 class ColourOption(click.Option):

@@ -12,6 +12,7 @@ from lab.cli.options import (
     arch_option,
     check_recording,
     out_option,
+    plots_option,
     quiet_option,
     repeats_option,
     set_option,
@@ -35,6 +36,7 @@ from lab.cli.options import (
 @repeats_option
 @arch_option
 @video_option
+@plots_option
 @quiet_option
 def run(
     preset: str | None,
@@ -44,6 +46,7 @@ def run(
     repeats: int | None,
     arch: str | None,
     no_video: bool,
+    no_plots: bool,
     quiet: bool,
 ) -> None:
     """Run PRESET: a name from `cargolab list`, or your own .toml file.
@@ -52,7 +55,7 @@ def run(
     cargolab run tilting/quick
     cargolab run tilting/quick --set grains.diameter="4 mm" --repeats 12
     cargolab run shaking/roll --set motion.roll.centre='["0 mm", "0 mm"]' --out centre0
-    cargolab run my.toml --no-video
+    cargolab run my.toml --repeats 12 --no-video --no-plots     the numbers alone
     cargolab run --replay renders/view/tilting/quick
     """
     overrides |= short_overrides(repeats, arch)
@@ -62,7 +65,7 @@ def run(
         check_recording(replay)
         from lab.view.replay import replay as replayed
 
-        show(replayed(replay, out, video=not no_video, quiet=quiet), quiet)
+        show(replayed(replay, out, video=not no_video, plots=not no_plots, quiet=quiet), quiet)
         return
     if preset is None:
         raise LabError("run: which preset? `cargolab list` shows all.")
@@ -76,14 +79,16 @@ def run(
             beside = None if no_video else stack.enter_context(second_process(cores_here()))
             from lab.runs.runner import run_preset
 
-        show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet, beside=beside), quiet)
+        asked = {"video": not no_video, "plots": not no_plots, "quiet": quiet}
+        show(run_preset(preset, overrides, out, **asked, beside=beside), quiet)
 
 
 @click.command()
 @click.argument("folder", type=FilePath(path_type=Path))
 @video_option
+@plots_option
 @quiet_option
-def resume(folder: Path, no_video: bool, quiet: bool) -> None:
+def resume(folder: Path, no_video: bool, no_plots: bool, quiet: bool) -> None:
     """Continue the run, sweep or calibration in FOLDER that was killed, interrupted or stopped.
 
     \b
@@ -92,7 +97,7 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
     with importing():
         from lab.sweeps.resume import resume_any
 
-    show(resume_any(folder, video=not no_video, quiet=quiet), quiet)
+    show(resume_any(folder, video=not no_video, plots=not no_plots, quiet=quiet), quiet)
 
 
 @click.command()

@@ -8,6 +8,7 @@ from lab.cli.options import (
     arch_option,
     cluster_option,
     out_option,
+    plots_option,
     quiet_option,
     repeats_option,
     set_option,
@@ -33,6 +34,7 @@ from lab.sweeps.axes import screen_first
 @repeats_option
 @arch_option
 @video_option
+@plots_option
 @cluster_option
 @quiet_option
 def sweep(
@@ -42,6 +44,7 @@ def sweep(
     repeats: int | None,
     arch: str | None,
     no_video: bool,
+    no_plots: bool,
     cluster: str | None,
     quiet: bool,
 ) -> None:
@@ -58,7 +61,8 @@ def sweep(
     screen_first(preset, axes, shortcuts)
     from lab.sweeps.sweep import run_sweep
 
-    show(run_sweep(preset, axes, shortcuts, out, video=not no_video, quiet=quiet, cluster=cluster), quiet)
+    asked = {"video": not no_video, "plots": not no_plots}
+    show(run_sweep(preset, axes, shortcuts, out, **asked, quiet=quiet, cluster=cluster), quiet)
 
 
 @click.command()

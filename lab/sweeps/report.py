@@ -38,8 +38,9 @@ def write_report(
     progress: Progress,
     *,
     video: bool,
+    plots: bool = True,
 ) -> tuple[list[Row], str]:
-    """Write results.csv, figures, sweep.mp4 and summary.md of a sweep; returns the table's rows and a short text.
+    """Write results.csv, summary.md, figures and sweep.mp4 of a sweep; returns the table's rows and a short text.
 
     settings: the values of the swept keys at each point; folders: of the points' runs, which may not exist yet. Raises
     LabError if the folder cannot be written.
@@ -50,7 +51,8 @@ def write_report(
     files = {"results": folder / "results.csv"}
     try:
         _write_table(rows, files["results"])
-        files |= _figures(name, axes, points, shown, folder)
+        if plots:
+            files |= _figures(name, axes, points, shown, folder)
         if video and (film := _film(name, points, folder, progress)):
             files["video"] = film
         page = folder / "summary.md"

@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from lab.sweeps.sweep import SweepResult
 
 
-def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -> "Result | SweepResult | Calibration":
+def resume_any(
+    folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False
+) -> "Result | SweepResult | Calibration":
     """Continue the run, sweep or calibration in a folder to its end; returns its result.
 
     Raises as `resume_run`, `resume_sweep` and `calibrate`.
@@ -25,8 +27,8 @@ def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -
     if (Path(folder) / SWEEP).exists():
         from lab.sweeps.sweep import resume_sweep
 
-        return resume_sweep(folder, video=video, quiet=quiet)
+        return resume_sweep(folder, video=video, plots=plots, quiet=quiet)
     open_recording(folder).close()  # before the slow imports, so that another folder is refused at once
     from lab.runs.runner import resume_run
 
-    return resume_run(folder, video=video, quiet=quiet)
+    return resume_run(folder, video=video, plots=plots, quiet=quiet)

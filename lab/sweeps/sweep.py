@@ -51,18 +51,19 @@ def run_sweep(
     out: Path | str | None = None,
     *,
     video: bool = True,
+    plots: bool = True,
     quiet: bool = False,
     cluster: str | None = None,
 ) -> SweepResult:
     """Run a preset at every point of a grid (see `define_sweep`); write to a folder (default: renders/NAME-sweep).
 
-    video: film the points side by side at the end; cluster: the address of a scheduler whose workers run the points
-    (see `lab.sweeps.cluster`). If the folder holds the same sweep, it is continued. Raises LabError, one sentence, and
-    KeyboardInterrupt; finished points are kept.
+    video: film the points side by side at the end; plots: draw the figures; cluster: the address of a scheduler whose
+    workers run the points (see `lab.sweeps.cluster`). If the folder holds the same sweep, it is continued. Raises
+    LabError, one sentence, and KeyboardInterrupt; finished points are kept.
     """
     sweep = define_sweep(name, axes, overrides)
     folder = named(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
-    return _complete(sweep, folder, video, quiet, cluster)
+    return _complete(sweep, folder, video, plots, quiet, cluster)
 
 
 def errands(
@@ -78,9 +79,9 @@ def errands(
     return _errands(sweep, folder, plan)
 
 
-def resume_sweep(folder: Path | str, *, video: bool = True, quiet: bool = False) -> SweepResult:
+def resume_sweep(folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False) -> SweepResult:
     """Continue the sweep in a folder as it was requested. Raises as `run_sweep`."""
-    return _complete(read_sweep(Path(folder)), Path(folder), video, quiet)
+    return _complete(read_sweep(Path(folder)), Path(folder), video, plots, quiet)
 
 
 def point_folder(folder: Path, number: int) -> Path:
@@ -119,7 +120,9 @@ def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[
 
 
 @in_turn
-def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str | None = None) -> SweepResult:
+def _complete(
+    sweep: Sweep, folder: Path, video: bool, plots: bool, quiet: bool, cluster: str | None = None
+) -> SweepResult:
     """Run the points that are not done, on the cluster as far as possible, and summarise all points."""
     plan = list(_plan(sweep))  # reports an impossible point early
     folders = [point_folder(folder, number) for number in range(len(sweep.points))]
@@ -130,9 +133,11 @@ def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str
                 fetch(_errands(sweep, folder, plan), cluster, progress)
             _SweepRunner(sweep, folder, folders, progress).go(plan)
         except KeyboardInterrupt:
-            write_report(sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=False)
+            write_report(sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=False, plots=plots)
             raise
-        rows, text = write_report(sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=video)
+        rows, text = write_report(
+            sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=video, plots=plots
+        )
     return SweepResult(folder, rows, text)
 
 

@@ -19,7 +19,9 @@ LARGEST = 1e3  # SI: upper bound on the value of any control
 
 
 @in_turn
-def replay(path: Path | str, out: Path | str | None = None, *, video: bool = True, quiet: bool = False) -> Result:
+def replay(
+    path: Path | str, out: Path | str | None = None, *, video: bool = True, plots: bool = True, quiet: bool = False
+) -> Result:
     """Run a recording of `cargolab view` again (default: in a folder beside it), and report it as a run.
 
     Raises LabError if it is not a recording of `cargolab view`.
@@ -46,7 +48,7 @@ def replay(path: Path | str, out: Path | str | None = None, *, video: bool = Tru
                 progress.reach(live.time)
             progress.finish()
             live.close()
-        return report(folder, progress, video=video)
+        return report(folder, progress, video=video, plots=plots)
 
 
 def _possible(done: Sequence[tuple[float, str, float]], series: np.ndarray, own: Mapping[str, float]) -> bool:

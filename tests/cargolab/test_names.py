@@ -19,9 +19,9 @@ NAMES = {
     "open": ("path", "sound"),
     "presets": ("word",),
     "render": ("path", "out", "png", "world", "progress", "look"),
-    "resume": ("folder", "video", "quiet"),
+    "resume": ("folder", "video", "plots", "quiet"),
     "run": ("preset", "out", "repeats", "video", "plots", "quiet", "overrides"),
-    "sweep": ("preset", "axes", "out", "repeats", "video", "quiet", "cluster", "overrides"),
+    "sweep": ("preset", "axes", "out", "repeats", "video", "plots", "quiet", "cluster", "overrides"),
     "view": ("preset", "out", "size", "overrides"),
 }
 

@@ -76,7 +76,7 @@ def test_without_a_command_the_help_is_shown():
 def test_run_passes_on_all_options(runner):
     done = call("run", "tilting/quick", "--set", "grains.diameter=4 mm", "--set", "run.repeats=12",
                 "--set", 'motion.tilt.centre=["0 mm", "5 mm"]', "--set", "motion.tilt.reverse=true",
-                "--set", "title=4 = four", "--out", "there", "--no-video")  # fmt: skip
+                "--set", "title=4 = four", "--out", "there", "--no-video", "--no-plots")  # fmt: skip
     assert done.exit_code == 0, done.output
     assert done.stdout == "12.3 deg\nrenders/tilting/quick\n"
     overrides = {
@@ -86,7 +86,10 @@ def test_run_passes_on_all_options(runner):
         "motion.tilt.reverse": True,
         "title": "4 = four",
     }
-    expected = ("tilting/quick", overrides, Path("there")), {"video": False, "quiet": False, "beside": None}
+    expected = (
+        ("tilting/quick", overrides, Path("there")),
+        {"video": False, "plots": False, "quiet": False, "beside": None},
+    )
     assert runner == [expected]
 
 
@@ -102,15 +105,15 @@ def test_sweep_passes_on_the_texts_of_the_values(monkeypatch):
                 "--repeats", "4", "--out", "there", "--cluster", "tcp://node1:8786")  # fmt: skip
     assert done.exit_code == 0 and done.stdout == "4 points\nthere\n"
     axes = {"motion.sway.frequency": "0.2:1.5:14 Hz", "run.seed": "1,2"}
-    options = {"video": True, "quiet": False, "cluster": "tcp://node1:8786"}
+    options = {"video": True, "plots": True, "quiet": False, "cluster": "tcp://node1:8786"}
     assert calls == [(("shaking/sway", axes, {"run.repeats": 4}, Path("there")), options)]
 
 
 def test_resume_passes_on_the_folder(monkeypatch):
     result = SimpleNamespace(summary_text="12.3 deg", folder=Path("there"))
     calls = stand_in(monkeypatch, "lab.sweeps.resume", "resume_any", result)
-    assert call("resume", "there", "--no-video", "--quiet").stdout == "there\n"
-    assert calls == [((Path("there"),), {"video": False, "quiet": True})]
+    assert call("resume", "there", "--no-video", "--no-plots", "--quiet").stdout == "there\n"
+    assert calls == [((Path("there"),), {"video": False, "plots": False, "quiet": True})]
 
 
 def test_quiet_prints_only_the_folder(runner):

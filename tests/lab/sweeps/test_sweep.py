@@ -312,6 +312,9 @@ def test_every_grid_has_its_figure(tmp_path, others):
     assert (tmp_path / "critical_angle.png").stat().st_size > 5000
     assert f"{len(settings) - 1} of {len(settings)} points are complete" in text
     assert (tmp_path / "summary.md").read_text().count("Beware.") == 1
+    (tmp_path / "critical_angle.png").unlink()
+    write_report("x", axes, settings, tmp_path, folders, Progress(quiet=True), video=False, plots=False)
+    assert not list(tmp_path.glob("*.png")) and "critical_angle.png" not in (tmp_path / "summary.md").read_text()
 
 
 @pytest.mark.slow
