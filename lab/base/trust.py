@@ -108,6 +108,22 @@ def check_progress(runs: object, rows: Sequence, messages: Sequence) -> None:
         raise ValueError("its warnings or notes are not texts")
 
 
+def finite(array: np.ndarray, axes: int, columns: int | None = None) -> bool:
+    """Whether an array has finite numbers and this many axes, the last one with `columns` entries."""
+    fits = array.ndim == axes and columns in (None, array.shape[-1]) and array.dtype.kind in "fiu"
+    return bool(fits and (np.abs(array) < BEYOND).all())
+
+
+def of_texts(table: object) -> bool:
+    """Whether something is a table of texts, or an empty one."""
+    return isinstance(table, dict) and all(isinstance(text, str) for text in table.values())
+
+
+def wide(outline: np.ndarray) -> bool:
+    """Whether an outline has an extent along both axes."""
+    return bool((np.ptp(outline, axis=0) > 0.0).all())
+
+
 def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> None:
     """Raise ValueError if the state of worlds of `count` grains asks for too much memory or refers to other grains.
 

@@ -17,6 +17,7 @@ from lab.measures.drawing import BLUE, VERMILION, Sheet, band, level, mean_label
 from lab.measures.steady import averaged, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from lab.recording.contacts.stress import coordination
 
 OF = "grains"
 EMPTY = "no grain is left in the tank"
@@ -40,7 +41,7 @@ def measure(recording: Recording) -> dict[str, Value]:
 def contact_number(recording: Recording) -> np.ndarray:
     """Mean coordination number (T, W); NaN for an empty tank."""
     grains = recording.radius.shape[1] - recording.series["spilled"]
-    return 2 * recording.series["contacts"] / np.where(grains > 0, grains, np.nan)
+    return coordination(recording.series["contacts"], grains)
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

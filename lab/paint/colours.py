@@ -15,8 +15,8 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.paint.cargo.dress import CargoColours, aboard_of
 from lab.paint.cargo.looks import looks
-from lab.paint.forces.stress import pressures
 from lab.preset.sections.video import OF_AIR, OF_WATER
+from lab.recording.contacts.stress import pressures
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed

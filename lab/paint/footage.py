@@ -11,13 +11,13 @@ import numpy as np
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.cargo.looks import Stowage
-from lab.paint.forces.again import Again
 from lab.paint.painter import Edges
 from lab.paint.scenery.drive import drive_text
 from lab.paint.sea import Rail, Sea
 from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
+from lab.recording.contacts.again import Again
 from lab.recording.ship_end import ends
 from solvers.grains.pressing import Pressing
 from solvers.grains.quantities import FRAMES

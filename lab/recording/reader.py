@@ -10,7 +10,8 @@ import h5py
 import numpy as np
 
 from lab.base.errors import LabError, Unusable
-from lab.base.trust import BEYOND, attributes, check_recording, format_of, text
+from lab.base.trust import attributes, check_recording, finite, format_of, of_texts, text, wide
+from lab.base.turn import in_turn
 from lab.preset.kept.recorded import content
 from lab.recording import older
 from lab.recording.checks import Checks
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     import xarray
 
     from lab.preset.schema import Preset
+    from lab.recording.contacts.table import Contacts
 
 SIZES = {
     "world": 2,
@@ -75,7 +77,7 @@ class Recording:
         self.path = Path(path)
         if self.path.is_dir():
             self.path = self.path / FILE_NAME
-        self.folder = self.path.parent
+        self.folder, self._again = self.path.parent, None
         self._file, self.form = _open(self.path)
         with ExitStack() as otherwise, reading(self.path):
             otherwise.callback(self._file.close)
@@ -153,19 +155,19 @@ class Recording:
         wet = "water" in self.content.matters
         sound = {
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
-            "attribute versions": _of_texts(self.versions),
+            "attribute versions": of_texts(self.versions),
             "attribute machine": isinstance(self.machine, dict),
             "preset/resolved": some == self.content.material,
-            "grains/radius": _finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
-            "water/volume": _finite(self.volume, 2) and (self.volume.size > 0) == wet and (self.volume > 0.0).all(),
-            "air/volume": _finite(self.air_volume, 2) and (self.air_volume > 0.0).all(),
+            "grains/radius": finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
+            "water/volume": finite(self.volume, 2) and (self.volume.size > 0) == wet and (self.volume > 0.0).all(),
+            "air/volume": finite(self.air_volume, 2) and (self.air_volume > 0.0).all(),
             "the number of worlds": len(self.volume) == len(self.air_volume) == len(self.radius),
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
             "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,
-            "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2 and _wide(self.outline),
-            "tank/fixed": _finite(self.fixed, 2, columns=3),
+            "tank/outline": finite(self.outline, 2, columns=2) and len(self.outline) > 2 and wide(self.outline),
+            "tank/fixed": finite(self.fixed, 2, columns=3),
             "tank/open_edges": all(0 <= edge < len(self.outline) for edge in self.open_edges),
-            "tank/parts": all(_finite(line, 2, columns=2) and len(line) > 1 for line in self.parts.values()),
+            "tank/parts": all(finite(line, 2, columns=2) and len(line) > 1 for line in self.parts.values()),
         }
         for name, is_sound in sound.items():
             if not is_sound:
@@ -199,6 +201,19 @@ class Recording:
 
         return labelled(self, frames)
 
+    @in_turn
+    def contacts(self, frame: int = -1, world: int = 0) -> "Contacts":
+        """The contacts of the grains of a bed in a frame, and their forces, found again from places.
+
+        Who touches what, where, which way and how hard (`table`, `write`, `labelled`), the stress in grains and their
+        coordination number. Raises NotRecorded without grains or frames, LabError where grains lie in each other.
+        """
+        from lab.recording.contacts.table import again_of, contacts_of  # with Taichi, which finds them
+
+        if self._again is None:
+            self._again = again_of(self)
+        return contacts_of(self, self._again, frame, world)
+
     @property
     def steering(self) -> list[tuple[float, str, float]] | None:
         """The user's actions in order, None if the run was not steered."""
@@ -229,6 +244,9 @@ class Recording:
 
     def close(self) -> None:
         """Close the file; arrays that were not read before can no longer be read."""
+        if self._again is not None:
+            self._again.close()
+            self._again = None
         self._file.close()
 
     def __enter__(self) -> "Recording":
@@ -236,22 +254,6 @@ class Recording:
 
     def __exit__(self, *error: object) -> None:
         self.close()
-
-
-def _finite(array: np.ndarray, axes: int, columns: int | None = None) -> bool:
-    """Whether an array has finite numbers and this many axes, the last one with `columns` entries."""
-    fits = array.ndim == axes and columns in (None, array.shape[-1]) and array.dtype.kind in "fiu"
-    return bool(fits and (np.abs(array) < BEYOND).all())
-
-
-def _of_texts(table: object) -> bool:
-    """Whether something is a table of texts, or an empty one."""
-    return isinstance(table, dict) and all(isinstance(text, str) for text in table.values())
-
-
-def _wide(outline: np.ndarray) -> bool:
-    """Whether an outline has an extent along both axes."""
-    return bool((np.ptp(outline, axis=0) > 0.0).all())
 
 
 def open_recording(path: Path | str, *, sound: bool = False) -> Recording:

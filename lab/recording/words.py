@@ -14,9 +14,13 @@ COUNTED = {  # what each axis counts, and the preset key that sets its size
     "edge": "gauges of force (gauges.NAME)",
 }
 
+OF_CONTACTS = "normal_force", "force", "contact_force", "stress", "pressure", "coordination", "contact_place", "normal"
+
 
 def recorded_by(name: object) -> str:
     """The end of a sentence on a missing quantity: what would record it."""
+    if name in OF_CONTACTS:
+        return "; `recording.contacts(frame)` finds it from the grains' places."
     if name == WAVES.name:
         return "; `cargolab view` records it, of a ship in waves."
     of_water = {quantity.name: quantity for quantity in (*OF_MATTERS["water"].SERIES, *OF_MATTERS["water"].FRAMES)}

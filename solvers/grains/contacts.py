@@ -208,24 +208,24 @@ class Contacts:
 
     @ti.func
     def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
-        """Place (m) of contact p of grains i and j, and its elastic force (N) on i; memory is not changed."""
+        """Place (m) of contact p of grains i and j, its elastic force (N) on i, overlap (m); memory is not changed."""
         apart = ti.Vector(g.between(w, i, j))
         overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - apart.norm(), g.real)
         return self.press_along(g, pairs, w, i, u, p, overlap, apart / apart.norm())
 
     @ti.func
     def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
-        """Place (m) of contact p of a grain with a wall, and its elastic force (N) on the grain."""
+        """Place (m) of contact p of a grain with a wall, its elastic force (N) on the grain, overlap (m)."""
         gap = self.walls.gap(feature, shift, g.place[0][w, i], g.place[1][w, i])
         overlap = ti.select(gap[0] > 0.0, ti.cast(g.radius[w, i] - gap[0], g.real), ti.cast(0.0, g.real))
         return self.press_along(g, contacts, w, i, u, p, overlap, ti.Vector([gap[1 + a] for a in range(g.axes)]))
 
     @ti.func
     def press_along(self, g: ti.template(), contacts: ti.template(), w, i, u, p, overlap, n):
-        """Place (m), then elastic force (N), of contact p with the normal n towards grain i."""
+        """Place (m), elastic force (N), then overlap (m), of contact p with the normal n towards grain i."""
         force, back = self.laws.elastic(contacts, u, p, overlap), g.radius[w, i] - 0.5 * overlap
         place = [g.place[a][w, i] - back * n[a] for a in ti.static(range(g.axes))]
-        return ti.Vector(place + [force * n[a] for a in ti.static(range(g.axes))])
+        return ti.Vector(place + [force * n[a] for a in ti.static(range(g.axes))] + [overlap])
 
     @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):

@@ -1,6 +1,6 @@
 """Elastic contact forces of a world, for display and analysis."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import taichi as ti
@@ -12,6 +12,7 @@ from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
 NOBODY = -1
+NO_PIECE = -1
 
 Offsets = ti.types.ndarray(dtype=ti.i32, ndim=1)
 Names = ti.types.ndarray(dtype=ti.i32, ndim=2)
@@ -23,12 +24,15 @@ class Pressing:
     """The k contacts of a world with a nonzero elastic force, in the tank's frame.
 
     `grains` (k, 2): numbers of the two grains, the second NOBODY for a wall, a part or a fixed grain; `place` (k, 2) m
-    of the contact; `force` (k, 2) N, elastic and along the normal, on the first grain.
+    of the contact; `force` (k, 2) N, elastic and along the normal, on the first grain; `overlap` (k,) m; `piece` (k,):
+    the piece of the tank that is touched, as `Walls.piece` numbers them, NO_PIECE for a grain.
     """
 
     grains: np.ndarray
     place: np.ndarray
     force: np.ndarray
+    overlap: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    piece: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
 
 UNTOUCHED = Pressing(np.zeros((0, 2), dtype=int), np.zeros((0, 2)), np.zeros((0, 2)))
@@ -48,13 +52,14 @@ class Presser:
         units = slice(world * self.units.a_world, (world + 1) * self.units.a_world)
         listed = [kind.length.to_numpy()[units] for kind in (self.neighbours.pairs, self.neighbours.contacts)]
         first = np.concatenate([[0], np.cumsum(sum(listed))]).astype(np.int32)
-        names = np.full((max(1, first[-1]), 2), NOBODY, dtype=np.int32)
+        names = np.full((max(1, first[-1]), 3), NOBODY, dtype=np.int32)
         axes = self.grains.axes
-        rows = np.zeros((len(names), 2 * axes), dtype=np.float32)
+        rows = np.zeros((len(names), 2 * axes + 1), dtype=np.float32)
         self.read_world(world, time, first, names, rows)
         pressing = names[:, 0] != NOBODY
-        names, rows = names[pressing], rows[pressing]
-        return Pressing(np.where(names == NOBODY, NOBODY, number[names]), rows[:, :axes], rows[:, axes:])
+        names, piece, rows = names[pressing, :2], names[pressing, 2], rows[pressing]
+        grains = np.where(names == NOBODY, NOBODY, number[names])
+        return Pressing(grains, rows[:, :axes], rows[:, axes:-1], rows[:, -1], piece)
 
     @ti.kernel
     def read_world(self, w: ti.i32, t: ti.f64, first: Offsets, names: Names, rows: Rows):
@@ -75,7 +80,8 @@ class Presser:
             listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
             if start <= mate < end or listed < mate:
                 i, j = ti.min(listed, mate), ti.max(listed, mate)
-                self.write(first + p, i, j, self.contacts.pair_press(g, pairs, w, i, j, u, p), names, rows)
+                press = self.contacts.pair_press(g, pairs, w, i, j, u, p)
+                self.write(first + p, i, j, NO_PIECE, press, names, rows)
 
     @ti.func
     def read_walls(
@@ -86,15 +92,15 @@ class Presser:
         for p in range(contacts.length[u]):
             i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
             press = self.contacts.wall_press(g, contacts, w, i, feature, shift, u, p)
-            self.write(first + p, i, self.grains.mobile, press, names, rows)
+            self.write(first + p, i, self.grains.mobile, self.walls.piece(feature), press, names, rows)
 
     @ti.func
-    def write(self, row, i, j, press, names: ti.template(), rows: ti.template()):
-        """Write a contact's place and force from `press` to a row, left empty if the force is zero."""
+    def write(self, row, i, j, piece, press, names: ti.template(), rows: ti.template()):
+        """Write a contact's place, force and overlap from `press` to a row, left empty if the force is zero."""
         force = [press[self.grains.axes + a] for a in ti.static(range(self.grains.axes))]
         if is_some(force):
-            names[row, 0] = i
+            names[row, 0], names[row, 2] = i, piece
             if j < self.grains.mobile:
                 names[row, 1] = j
-            for k in ti.static(range(2 * self.grains.axes)):
+            for k in ti.static(range(2 * self.grains.axes + 1)):
                 rows[row, k] = ti.cast(press[k], ti.f32)

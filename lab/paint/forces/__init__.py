@@ -1,1 +1,1 @@
-"""The forces between grains in pictures: found again from recorded places, as chains and as pressure."""
+"""The forces between grains in pictures, as chains; `lab.recording.contacts` finds them."""

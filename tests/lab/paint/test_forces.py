@@ -7,12 +7,12 @@ from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
-from lab.paint.forces.again import Again
 from lab.paint.forces.chains import THICKEST, chains, paint_chains
-from lab.paint.forces.stress import pressures
 from lab.paint.page.theme import THEMES
 from lab.paint.painter import Camera
 from lab.preset.find import load
+from lab.recording.contacts.again import Again
+from lab.recording.contacts.stress import pressures
 from solvers.grains.pressing import NOBODY
 from solvers.simulation import Simulation
 from tests.oracles.synthetic import DIAMETER, frame, recorder, sample

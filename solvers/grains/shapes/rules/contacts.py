@@ -225,25 +225,25 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
-        """Place (y, z) m of contact p of grains i and j, and its elastic force (N) on i; memory is not changed."""
+        """Place (y, z) m of contact p of grains i and j, its elastic force (N) on i, overlap (m); memory stays."""
         c = self.rule.pair(g, pairs, w, i, j, u, p, False)
         force = self.elastic_along(pairs, u, p, c, self.rule.is_lost(pairs, u, p))
         if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
             if c[OVERLAP] > 0.0:
                 saddle = self.rule.pair_saddle(g, pairs, w, i, j, u, p, False)
                 force -= self.elastic_along(pairs, u, p, saddle, self.rule.is_lost(pairs, u, p))
-        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1]])
+        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1], c[OVERLAP]])
 
     @ti.func
     def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
-        """Place (y, z) m of contact p of a grain with a wall, and its elastic force (N) on the grain."""
+        """Place (y, z) m of contact p of a grain with a wall, its elastic force (N) on the grain, overlap (m)."""
         c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, False)
         force = self.elastic_along(contacts, u, p, c, self.rule.is_lost(contacts, u, p))
         if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
             if c[OVERLAP] > 0.0:
                 saddle = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, False)
                 force -= self.elastic_along(contacts, u, p, saddle, self.rule.is_lost(contacts, u, p))
-        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1]])
+        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1], c[OVERLAP]])
 
     @ti.func
     def elastic_along(self, contacts: ti.template(), u, p, c, lost):

@@ -1,0 +1,1 @@
+"""The contacts of recorded grains and their forces, found again from recorded places: as data, and for pictures."""
