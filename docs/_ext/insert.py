@@ -6,6 +6,8 @@
 {{ page FILE }}                   a page that lies elsewhere, with its pictures; FILE from the repository's root
 {{ ratios FOLDER }}               by processor how many times as fast as other codes the lab is, with a folder's records
 {{ presets }}                     the reference of all keys of a preset
+
+A fence ```formula holds one formula in the plain text of docstrings, which is set as theirs are.
 """
 
 import os
@@ -13,6 +15,7 @@ import re
 from pathlib import Path
 
 import docstrings
+from formula import mathml
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
@@ -21,6 +24,7 @@ from lab.studies.bench.speed.processors import overview
 
 ROOT = Path(__file__).parents[2]
 ASKED = re.compile(r"^\{\{ (\w+)((?: [^ }]+)*) \}\}$", re.MULTILINE)
+FORMULA = re.compile(r"^```formula\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"(\]\()([^)#\s]+)")
 SHOWN = {  # pages that lie elsewhere, and the pages here that show them
     "CONTRIBUTING": "contributing",
@@ -50,6 +54,7 @@ def filled_in(text: str, folder: Path) -> str:
         "ratios": lambda name: overview(ROOT / name),
         "presets": reference,
     }
+    text = FORMULA.sub(lambda found: mathml(found[1]), text)
     return ASKED.sub(lambda found: made[found[1]](*found[2].split()), text)
 
 

@@ -48,12 +48,12 @@ def test_every_law_has_formula_source_limits_and_units(table, name, law):
 
 
 def test_every_table_of_laws_is_in_the_manual():
-    asked = " ".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "physics").glob("*.md")))
+    asked = " ".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "physics").rglob("*.md")))
     assert [table for table in TABLES if not re.search(rf"registry \S+ {table} ", asked)] == []
 
 
 def test_every_module_of_a_ships_physics_is_in_the_manual():
-    pages = [path for folder in ("physics", "naval") for path in sorted((DOCS / folder).glob("*.md"))]
+    pages = [path for folder in ("physics", "naval") for path in sorted((DOCS / folder).rglob("*.md"))]
     asked = " ".join(path.read_text(encoding="utf-8") for path in pages)
     modules = [path for path in (DOCS.parent / "solvers" / "ship").rglob("*.py") if path.name != "__init__.py"]
     plain = {"panels", "quantities", "vessel"}  # what they say is no physics

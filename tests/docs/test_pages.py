@@ -46,6 +46,14 @@ def test_kept_results_are_shown_with_their_pictures(built):
     assert "<math" in (built / "physics" / "contacts.html").read_text(encoding="utf-8")
 
 
+def test_every_fence_with_a_formula_is_set(built):
+    asked = {path: path.read_text(encoding="utf-8").count("```formula\n") for path in (ROOT / "docs").rglob("*.md")}
+    assert sum(asked.values()) > 10
+    for path, count in asked.items():
+        page = built / path.relative_to(ROOT / "docs").with_suffix(".html")
+        assert not count or page.read_text(encoding="utf-8").count('class="formula"') >= count, path
+
+
 def test_the_first_preset_is_one_and_its_result_has_what_is_read(tmp_path):
     """Of getting started: the preset resolves, and the lines of Python name a measure that there is."""
     text = (ROOT / "docs" / "getting-started.md").read_text(encoding="utf-8")

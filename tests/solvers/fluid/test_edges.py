@@ -26,7 +26,7 @@ OCTAGON = 1e-3 * np.array(
 QUADRATURE = 160  # points of a face
 DEPTH, ROWS = 0.16, 16
 UPRIGHT = 2  # the octagon's edge from 100 mm on: a corner of 135 deg is 6 spacings below the surface
-UNEVEN = 0.008  # of ρ g H: the error of pressure at rest, r.m.s., of some 20 layers, as `docs/physics/sph.md` has it
+UNEVEN = 0.008  # of ρ g H: r.m.s. error of the pressure at rest, some 20 layers (docs/physics/sph/accuracy.md)
 
 
 def frame(outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
