@@ -48,7 +48,7 @@ def test_kept_results_are_shown_with_their_pictures(built):
 
 def test_every_fence_with_a_formula_is_set(built):
     asked = {path: path.read_text(encoding="utf-8").count("```formula\n") for path in (ROOT / "docs").rglob("*.md")}
-    assert sum(asked.values()) > 10
+    assert sum(asked.values()) > 20
     for path, count in asked.items():
         page = built / path.relative_to(ROOT / "docs").with_suffix(".html")
         assert not count or page.read_text(encoding="utf-8").count('class="formula"') >= count, path

@@ -14,7 +14,7 @@ NEAR = 1e-2  # excess of density below which the energy is told by its series
 BORNE = 0.3  # of p_a: suction that air bears without being torn apart
 SHAKEN = 0.02  # of ρ c² of the water: from about 0.1 on a background pressure stirs it
 STEEPEST = 0.743  # of 1/h: the gradient of the phase in a plane surface, ∫ W along a line (Wendland C2)
-HOLDING = 3.0  # times what a surface under tension draws along itself: at 1 it tears, see docs/physics/air.md
+HOLDING = 3.0  # times what a surface under tension draws along itself: at 1 it tears, see docs/physics/air/tension.md
 
 
 def background(air: Air, water: Water, weight: float = 0.0) -> float:
