@@ -111,11 +111,11 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         heel=given.heel or roll,
         release=given.release if given.heel or given.release or not roll else 2.0 * pi / frequency,
         limits=limits,
-        handover=given.coupling_step if given.coupling == "as_K" else None,
+        handover=given.coupling_step if given.coupling == "staggered" else None,
         openings=openings,
         rest=roll,
     )
-    if given.coupling == "as_K":
+    if given.coupling == "staggered":
         _require_stable(given.coupling_step, vessel)
     return vessel
 

@@ -76,7 +76,7 @@ def ellipse(strain: float, pull: float, times: np.ndarray) -> np.ndarray:
 
 def half_axes(recording: Recording) -> np.ndarray:
     """Half axes (F, W, 2) of a drop in the frames, of its radius."""
-    place = recording.frames["water_place"][:].astype(float)
+    place = recording.frames["water_position"][:].astype(float)
     size = place.std(axis=2)
     return size / size[0]
 
@@ -129,7 +129,7 @@ def _of_turning(recording: Recording) -> dict[str, Value]:
     found = {"angular_momentum": over_worlds(100.0 * momentum[-1] / momentum[0], "%", note="closed form 100 %")}
     if water.region is None or water.flow.pull:
         return found
-    first, last = (recording.frames["water_place"][k].astype(float) for k in (0, -1))
+    first, last = (recording.frames["water_position"][k].astype(float) for k in (0, -1))
     time, shares = recording.frames["time"][-1] - recording.frames["time"][0], []
     for w in range(recording.worlds):
         centre = first[w].mean(axis=0)

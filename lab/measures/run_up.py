@@ -38,7 +38,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     size = spacing(recording.preset)
     highest = np.full(recording.worlds, -np.inf)
     for frame in range(len(recording.frames["time"])):
-        place = recording.frames["water_place"][frame]
+        place = recording.frames["water_position"][frame]
         highest = np.fmax(highest, np.fmax.reduce(place[..., 1].astype(float), axis=1))
     highest = highest + 0.5 * size
     reached = int(np.count_nonzero(top - highest <= size))

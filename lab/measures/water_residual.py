@@ -1,12 +1,12 @@
 """What is wrong with a run of water by its own account: the energy that nothing explains, and its compression.
 
-water_residual: the largest |E(t) − E(0) + viscous + diffusive + held − work| of the run, over the energy exchanged by
+water_residual: the largest |E(t) − E(0) + viscous + diffusive + stored − work| of the run, over the energy exchanged by
 then, |work| + viscous + |diffusive| + the largest kinetic energy. E is the kinetic, potential and elastic energy over
-the earth, `viscous` and `diffusive` are what viscosity and the diffusion of density have taken, `held` what the walls'
-dummy particles hold, `work` that of the walls (Antuono, Marrone, Colagrossi & Bouscasse 2015, for δ-SPH). It is zero
+the earth, `viscous` and `diffusive` are what viscosity and the diffusion of density have taken, `stored` the energy in
+the wall particles, `work` that of the walls (Antuono, Marrone, Colagrossi & Bouscasse 2015, for δ-SPH). It is zero
 up to the error of the time step.
-water_excess: the largest deviation of the density from that at rest. Up to some 1 % the water counts as incompressible;
-impacts may exceed it for a moment. water_dense: the largest share of the water that deviates by more than 3 %.
+water_density_deviation: the largest |ρ/ρ0 − 1|. Up to some 1 % the water counts as incompressible; impacts may exceed
+it for a moment. water_dense: the largest share of the water that deviates by more than 3 %.
 Error: none of their own.
 """
 
@@ -28,7 +28,7 @@ def applies(recording: Recording) -> bool:
 
 
 def measure(recording: Recording) -> dict[str, Value]:
-    """water_residual, water_excess and water_dense (%)."""
+    """water_residual, water_density_deviation and water_dense (%)."""
     series = recording.series
     exchanged = sum(np.abs(series[name]) for name in ("water_work", *TAKEN))
     exchanged = exchanged + np.maximum.accumulate(series["water_kinetic"], axis=0)
@@ -37,7 +37,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     share = np.divide(100.0 * worst, most, out=np.full_like(most, np.nan), where=most > 0.0)
     return {
         "water_residual": over_worlds(share, "%", note="of the energy exchanged", missing="nothing moves"),
-        "water_excess": over_worlds(100.0 * series["water_excess"].max(axis=0), "%"),
+        "water_density_deviation": over_worlds(100.0 * series["water_density_deviation"].max(axis=0), "%"),
         "water_dense": over_worlds(100.0 * series["water_dense"].max(axis=0), "%"),
     }
 
@@ -46,7 +46,7 @@ def residual(recording: Recording) -> np.ndarray:
     """Energy (T, W), J, that nothing accounts for."""
     series = recording.series
     gained = series["water_total"] - series["water_total"][0]
-    return gained + sum(series[name] for name in TAKEN) + series["water_held"] - series["water_work"]
+    return gained + sum(series[name] for name in TAKEN) + series["water_wall_energy"] - series["water_work"]
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

@@ -22,7 +22,7 @@ from lab.recording.ship_end import ends
 from solvers.grains.pressing import Pressing
 from solvers.grains.quantities import FRAMES
 
-RATES = {"position": "velocity", "water_place": "water_velocity"}  # rates of change among the recorded quantities
+RATES = {"position": "velocity", "water_position": "water_velocity"}  # rates of change among the recorded quantities
 LEAST = 1e-9  # share of the time between two frames
 NO_GRAINS = {quantity.name: np.zeros((0, *quantity.shape)) for quantity in FRAMES}  # of an empty tank
 
@@ -211,9 +211,9 @@ class Bed:
         """The values (n,) or (n, 2) of a quantity for each particle of water."""
         return self.footage.drops(name, frame, self.world)
 
-    def water_place(self, frame: int) -> np.ndarray:
+    def water_position(self, frame: int) -> np.ndarray:
         """Places (n, 2) of the water in the tank frame, m; NaN for what is as far away from the tank as it is large."""
-        place = self.drops("water_place", frame)
+        place = self.drops("water_position", frame)
         outline = np.concatenate([basin.outline for basin in self.footage.basins])
         size = np.ptp(outline, axis=0).max()
         near = (place >= outline.min(axis=0) - size) & (place <= outline.max(axis=0) + size)

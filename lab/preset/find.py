@@ -155,12 +155,14 @@ def _merged(name_or_path: str | Path, overrides: Mapping | None) -> tuple[Source
     source, quick = _find_variant(str(name_or_path))
     try:
         layers = _layers(source)
-        formats.upgrade([layer.table for layer in layers], source.shown)
+        changes = nested(overrides or {})
+        formats.upgrade(tables := [layer.table for layer in layers], source.shown)
+        formats.upgrade_words([*tables, changes], source.shown)
         keys = kept.keys()
         variant = _quick_variant(source, layers, marked(keys, "cheap"))
         if quick and not variant:
             raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
-        layers = [*layers, Layer(variant if quick else {}, Path()), Layer(nested(overrides or {}), Path())]
+        layers = [*layers, Layer(variant if quick else {}, Path()), Layer(changes, Path())]
         table = reduce(merged, (layer.located(marked(keys, "columns")) for layer in layers))
         if keys is not kept.loaded():
             check_keys(keys, table)

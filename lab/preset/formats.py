@@ -1,7 +1,8 @@
 """Presets and recordings of earlier formats, in the keys of the present one. Nothing else knows of them.
 
 In format 2, which had no key `format`, the table [water] was the sea; in format 3 that is [sea], and [water] is water
-in a tank. A preset that says no format and has no [water] reads the same in both. Recordings of earlier versions hold
+in a tank. A preset that says no format and has no [water] reads the same in both. Values that have another word now are
+read under the old one, too. Recordings of earlier versions hold
 their presets as resolved then: with derived values in place of the keys that they follow from.
 """
 
@@ -13,6 +14,7 @@ from lab.preset.units import quoted
 
 FORMAT = 3
 SEA = "density", "depth"  # keys of the sea in format 2
+REWORDED = {"ship": {"coupling": {"as_K": "staggered"}}}  # values by section and key, and their present words
 
 
 class OldFormat(UserWarning):
@@ -46,6 +48,24 @@ def upgrade(tables: Sequence[dict], shown: str) -> None:
     )
 
 
+def upgrade_words(tables: Sequence[dict], shown: str) -> None:
+    """Put values that have another word now into that, in place, and warn of each."""
+    for key, old, new in (one for table in tables for one in _reword(table)):
+        warnings.warn(f'{shown}: {key}: "{old}" is called "{new}" now; write that.', OldFormat, stacklevel=2)
+
+
+def _reword(table: dict) -> list[tuple[str, str, str]]:
+    """Put values of earlier versions into present words, in place; returns each key, old and new word."""
+    found = []
+    for section, keys in REWORDED.items():
+        for key, new in keys.items():
+            old = table[section].get(key) if isinstance(table.get(section), Mapping) else None
+            if isinstance(old, str) and old in new:
+                table[section] = {**table[section], key: new[old]}
+                found.append((f"{section}.{key}", old, new[old]))
+    return found
+
+
 def _check_sea(table: object, shown: str) -> None:
     """Raise LabError for a table that no sea is but water in a tank, whose preset says no format."""
     strange = [key for key in table if key not in SEA] if isinstance(table, Mapping) else []
@@ -67,10 +87,11 @@ def _format(table: Mapping, shown: str) -> int | None:
 
 
 def recorded(table: Mapping) -> Mapping:
-    """The table of a recorded preset in the keys of the present format."""
-    if "format" in table or not isinstance(table.get("tank"), Mapping):
-        return _timed(table)
+    """The table of a recorded preset in the keys and words of the present format."""
     kept = dict(table)
+    _reword(kept)
+    if "format" in table or not isinstance(table.get("tank"), Mapping):
+        return _timed(kept)
     if "water" in kept:
         kept["sea"] = kept.pop("water")
     if isinstance(kept.get("ship"), Mapping) and "sheet" in kept["ship"]:

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from lab.base.trust import attribute_words
+from lab.recording import older
 from lab.recording.layout import COLUMNS, FLUSHED_ROWS, row_bytes
 
 BLOCK = 2**22  # bytes read at a time when all rows are checked
@@ -41,8 +42,8 @@ class Checks:
 
     @property
     def names(self) -> set[str]:
-        """Names of the data sets that have checksums."""
-        return set(self._column)
+        """Present names of the data sets that have checksums."""
+        return set(map(older.present, self._column))
 
     def refresh(self) -> None:
         """Reload the data set, which another process may have extended."""

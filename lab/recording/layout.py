@@ -11,6 +11,7 @@ import numpy as np
 
 from lab.base.trust import attribute_words
 from lab.preset.kept.content import MATTERS, Content, parted
+from lab.recording import older
 from lab.recording.outlines import GROUP as SHAPES
 from solvers.fluid import quantities as water
 from solvers.fluid.phases import quantities as air
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 # Some attributes are not read by `Recording`; they inform people who open the file with other programs: `pose_is_of`,
 # the reference point of pose and pose_rate; for a ship `ship_axis` and `ship_axis_in_tank`, y, z (m) of the roll axis
 # in the hull's and in the tank's frame, and `sway_and_heave_are_of`, the point whose sway and heave are reported.
-FORMAT = "cargo-shift-lab 3"
+FORMAT = "cargo-shift-lab 4"
 FILE_NAME = "recording.h5"
 
 TIME = Quantity("time", "s", label="time", per="run")
@@ -43,6 +44,7 @@ STEERING = (
     Quantity("value", "", label="value that it was set to, SI", per="run"),
 )
 DTYPES = {"name": "S32"}  # of the quantities for which the default of `dtype_of` does not apply
+PARTICLES = "grain", "water_particle", "air_particle"
 CHECKS = "checks"  # the group of the checksums
 FLUSHED_ROWS = "rows"  # its attribute with the number of rows of the table at the last flush
 COLUMNS = "columns"  # its attribute with the names of the data sets, in the order of the checksums in a row
@@ -94,14 +96,14 @@ def sizes_of(
 ) -> dict[str, int]:
     """How many worlds, grains, particles of water and air, parts and gauges there are, by the owners of quantities."""
     worlds, count = radius.shape
-    drops, puffs = (0 if volumes is None else volumes.shape[1] for volumes in (volume, air))
+    water, gas = (0 if volumes is None else volumes.shape[1] for volumes in (volume, air))
     named = {owner: len(those) for owner, those in names.items()}
-    return {"world": worlds, "grain": count, "drop": drops, "puff": puffs, **named}
+    return {"world": worlds, "grain": count, "water_particle": water, "air_particle": gas, **named}
 
 
 def dtype_of(quantity: Quantity) -> str:
     """The data type in which a quantity is stored: 32 bits for values per particle, 64 bits for all others."""
-    return DTYPES.get(quantity.name, "<f4" if quantity.per in ("grain", "drop", "puff") else "<f8")
+    return DTYPES.get(quantity.name, "<f4" if quantity.per in PARTICLES else "<f8")
 
 
 def rows_of(quantities: Iterable[Quantity], sizes: Mapping[str, int]) -> dict[str, tuple[tuple[int, ...], str]]:
@@ -156,7 +158,8 @@ def _describe(data: h5py.Dataset, quantity: Quantity) -> None:
 
 def described(data: h5py.Dataset) -> Quantity:
     """The quantity that a data set's attributes describe. Raises ValueError, KeyError or Unusable if invalid."""
-    axes, components = tuple(attribute_words(data, "axes")), tuple(attribute_words(data, "components"))
+    axes = tuple(map(older.present, attribute_words(data, "axes")))
+    components = tuple(attribute_words(data, "components"))
     owners = axes[1:-1] if components else axes[1:]
     (unit,), (label,) = attribute_words(data, "units"), attribute_words(data, "long_name")
     mean, plot = (bool(data.attrs[name]) for name in ("mean_over_sample", "plot"))
@@ -164,7 +167,8 @@ def described(data: h5py.Dataset) -> Quantity:
     per = next((per for per, names in OWNERS.items() if names == owners), None)
     if max(map(len, (unit, label, *components)), default=0) > LONGEST_LABEL:
         raise ValueError(f"{data.name[1:]} has a longer label than the lab writes")
-    found = Quantity(data.name.rpartition("/")[2], unit, components, label, mean, per or "", never, plot)
+    name = older.present(data.name.rpartition("/")[2])
+    found = Quantity(name, unit, components, label, mean, per or "", never, plot)
     if per is None or axes != found.axes or len(found.units) != found.width:
         raise ValueError(f"{data.name[1:]} is not what the lab writes there")
     return found

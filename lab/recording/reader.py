@@ -44,8 +44,8 @@ SIZES = {
     "world": 2,
     "grain": 3,
     "part": 5,
-    "drop": 7,
-    "puff": 19,
+    "water_particle": 7,
+    "air_particle": 19,
     "gauge": 11,
     "level": 13,
     "edge": 17,
@@ -135,13 +135,12 @@ class Recording:
 
     def _tables(self) -> dict[str, Frames]:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
-        is_older = older.is_older(self.form)
         sizes = sizes_of(self.names, self.radius, self.volume, self.air_volume)
         wanted = tables_of(self.content, "steering" in self._file)
         found = {}
         for name, known in wanted.items():
             group, checks = self._file[name], None
-            if is_older:
+            if self.form == older.WITHOUT_CHECKS:
                 quantities = older.quantities(group, known)
             else:
                 checks = Checks(self._file[f"{CHECKS}/{name}"])
@@ -194,8 +193,8 @@ class Recording:
     def labelled(self, frames: slice | None = None) -> "xarray.Dataset":
         """The series, or the given frames, as arrays with named axes, units and labels.
 
-        Axes are time, world, grain, drop, part, gauge and level; components lie along `axis` (y, z), `freedom` (y, z,
-        roll) or NAME_component. Raises LabError if the rows are damaged.
+        Axes are time, world, grain, water_particle, air_particle, part, gauge, level and edge; components lie along
+        `axis` (y, z), `freedom` (y, z, roll) or NAME_component. Raises LabError if the rows are damaged.
         """
         from lab.recording.labelled import labelled
 
@@ -240,7 +239,13 @@ class Recording:
     def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype]:
         """Shape and data type of a data set as stored in the file."""
         with reading(self.path):
-            return self._file[name].shape, self._file[name].dtype
+            data = self._file[self.stored_as(name)]
+            return data.shape, data.dtype
+
+    def stored_as(self, name: str) -> str:
+        """The path of a data set in the file, where one of an earlier format may have another name."""
+        group, _, column = name.rpartition("/")
+        return f"{group}/{older.stored(self._file[group]).get(column, column)}"
 
     def close(self) -> None:
         """Close the file; arrays that were not read before can no longer be read."""
@@ -266,10 +271,10 @@ def _quantities(group: h5py.Group, known: tuple[Quantity, ...]) -> dict[str, Qua
 
     Raises ValueError or KeyError if a known one is missing or has another shape or data type.
     """
-    found = {}
-    for name in (*(quantity.name for quantity in known), *group):
+    found, stored = {}, older.stored(group)
+    for name in (*(quantity.name for quantity in known), *stored):
         if name not in found:
-            found[name] = described(group[name])
+            found[name] = described(group[stored.get(name, name)])
     for quantity in known:
         if rows_of([quantity], SIZES) != rows_of([found[quantity.name]], SIZES):
             raise ValueError(f"{group.name[1:]}/{quantity.name} is not what the lab writes there")
@@ -292,7 +297,7 @@ def _open(path: Path) -> tuple[h5py.File, str]:
     except LabError:
         file.close()
         raise
-    if form == FORMAT or older.is_older(form):
+    if form in (FORMAT, *older.FORMATS):
         return file, form
     file.close()
     if form.startswith(FORMAT.split()[0]):

@@ -11,6 +11,7 @@ import numpy as np
 from lab.base.errors import NotRecorded, Unusable
 from lab.base.trust import check_room
 from lab.preset.units import quoted, show
+from lab.recording import older
 from lab.recording.checks import Checks
 from lab.recording.layout import ATTEMPTS, RETRY_DELAY, rows_of, sentence
 from lab.recording.words import axes, indexed, recorded_by
@@ -34,7 +35,8 @@ class Frames(Mapping):
         path: Path,
     ) -> None:
         self.quantities, self._checks, self._path, self._table = quantities, checks, path, group.name.strip("/")
-        self._columns: dict[str, h5py.Dataset] = {name: group[name] for name in quantities if name in group}
+        stored = older.stored(group)
+        self._columns: dict[str, h5py.Dataset] = {name: group[stored[name]] for name in quantities if name in stored}
         for name, (shape, kind) in rows_of(quantities.values(), sizes).items():
             data = self._columns.get(name)
             if data is not None and (data.shape[1:] != shape or data.dtype != np.dtype(kind)):
@@ -141,7 +143,7 @@ class Column:
             return found[(slice(None),) * many + tuple(others)] if others else found
         except (IndexError, TypeError) as error:
             name = self._dataset.name.strip("/")
-            per = self._table.quantities[name.rpartition("/")[2]]
+            per = self._table.quantities[older.present(name.rpartition("/")[2])]
             raise NotRecorded(
                 f"{self._table._path}: {name} has no {indexed(index)}; it is {axes(name, per, self.shape)}."
             ) from error

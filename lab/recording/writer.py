@@ -17,6 +17,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.files import replacing
 from lab.base.trust import attribute_words, format_of
 from lab.preset import recorded
+from lab.recording import older
 from lab.recording.checks import Checks, row_checks
 from lab.recording.layout import (
     CHECKS,
@@ -143,7 +144,7 @@ class Recorder:
             self._file = open_to_add(self.path)
             otherwise.callback(self._file.close)
             self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
-            if format_of(self._file) != FORMAT:
+            if format_of(self._file) not in (FORMAT, older.WITH_OTHER_NAMES):
                 raise Unusable(f"{self.path} was begun by another version: start the run again.")
             kept = {"series": samples, "frames": frames}
             kept |= {"steering": 0} if "steering" in self._file else {}
@@ -251,8 +252,8 @@ class _Table:
 
     def __init__(self, file: h5py.File, table: str, rows: int) -> None:
         group, self._checks = file[table], file[f"{CHECKS}/{table}"]
-        self.names = tuple(attribute_words(self._checks, COLUMNS))
-        self._datasets: dict[str, h5py.Dataset] = {name: group[name] for name in self.names}
+        self._datasets = {older.present(name): group[name] for name in attribute_words(self._checks, COLUMNS)}
+        self.names = tuple(self._datasets)
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self.names}
         self._row = {name: (data.shape[1:], data.dtype) for name, data in self._datasets.items()}  # slow in h5py
         grow = (*self._datasets.values(), self._checks)

@@ -26,8 +26,8 @@ class Points(NamedTuple):
 
 OF_MATTERS = {
     "grains": Points("grain", "position", "grains/radius"),
-    "water": Points("drop", "water_place", "water/volume"),
-    "air": Points("puff", "air_place", "air/volume"),
+    "water": Points("water_particle", "water_position", "water/volume"),
+    "air": Points("air_particle", "air_position", "air/volume"),
 }
 
 
@@ -85,7 +85,7 @@ def _add_slab(parent: Xml.Element, recording: Recording, name: str, place: tuple
     item = _add(slab, "DataItem", Dimensions=f"3 {len(shape)}", Format="XML")
     item.text = " ".join(_words(row) for row in corner)
     source = _add(slab, "DataItem", Dimensions=_words(shape), NumberType="Float", Precision=kind.itemsize, Format="HDF")
-    source.text = f"{recording.path.name}:/{name}"
+    source.text = f"{recording.path.name}:/{recording.stored_as(name)}"
 
 
 def _add(parent: Xml.Element, tag: str, **attributes: object) -> Xml.Element:

@@ -157,7 +157,7 @@ def facts(recording: Recording) -> dict[str, object]:
         "sound_speed_m_s": water.sound_speed,
         "steps": _steps(recording, scene),
         "limits": [asdict(limit) for limit in scene.step_limits()] if scene else [],
-        "largest_excess": float(recording.series["water_excess"].max(initial=0.0)),
+        "largest_density_deviation": float(recording.series["water_density_deviation"].max(initial=0.0)),
         "energy_residual_J": float(np.abs(residual(recording)).max(initial=0.0)) if found else 0.0,
         "peaks": {name: {"pressure_Pa": value, "time_s": when} for name, (value, when) in peaks.items()},
     }

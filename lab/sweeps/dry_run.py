@@ -71,7 +71,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
     if preset.grains:
         frame["position"] = position[:, :GRAINS]
     if preset.water:
-        frame["water_place"] = scene.fluid.particles["position"][:, : volume.shape[1]]
+        frame["water_position"] = scene.fluid.particles["position"][:, : volume.shape[1]]
     times = np.arange(max(1, round(preset.duration * rate)) + 1) / rate
     with Recorder(folder) as recorder:
         for k, (time, pose) in enumerate(zip(times, _poses(preset, scene, position, times), strict=True)):

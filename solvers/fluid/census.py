@@ -31,7 +31,7 @@ SUMS = (
         "air_pressed",
         "air_volume",
     ),  # of two phases: the air's part of these
-    *("excess", "escaped", "air_excess"),  # largest values, not sums
+    *("excess", "escaped", "air_density_deviation"),  # largest values, not sums
 )
 
 
@@ -92,7 +92,7 @@ class Census:
         """Sums of every world at `time` (s), (W, …) by the names of `SUMS`, for a tank of `thickness` (m)."""
         self.count(time)
         found = {name: field.to_numpy() for name, field in zip(SUMS, self.sums, strict=True)}
-        extreme = {name: found.pop(name).max(axis=1) for name in ("excess", "escaped", "air_excess")}
+        extreme = {name: found.pop(name).max(axis=1) for name in ("excess", "escaped", "air_density_deviation")}
         return {name: values.sum(axis=1) * thickness for name, values in found.items()} | extreme
 
     def of_water(self, sums: dict[str, np.ndarray], mass: np.ndarray, centre: np.ndarray) -> dict[str, np.ndarray]:
@@ -108,7 +108,7 @@ class Census:
             "air_kinetic": sums["air_flowing"],
             "air_mean_pressure": sums["air_pressed"] / np.maximum(sums["air_volume"], 1e-300),
             "air_volume": sums["air_volume"],
-            "air_excess": sums["air_excess"],
+            "air_density_deviation": sums["air_density_deviation"],
         }
 
     def buoyed(self, sums: dict[str, np.ndarray], down: np.ndarray) -> np.ndarray | float:
@@ -223,7 +223,7 @@ class Census:
         sums[self.at.air_pressed] += volume * stiffness * c.gas.share(s)
         if ti.static(c.modified):
             sums[self.at.air_pressed] += volume * c.reduced.above(c, [self.now[3][w], self.now[4][w]], r)
-        sums[self.at.air_excess] = ti.max(sums[self.at.air_excess], ti.abs(s))
+        sums[self.at.air_density_deviation] = ti.max(sums[self.at.air_density_deviation], ti.abs(s))
 
     @ti.func
     def add_background(self, sums: ti.template(), m, s, gas):

@@ -81,7 +81,7 @@ def outside(place: np.ndarray, box: tuple[np.ndarray, np.ndarray] | None) -> np.
 
 def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarray:
     """Energy (W,) J that nothing accounts for: gain, losses and what dummies hold, less the work of the walls."""
-    taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_held"]
+    taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_wall_energy"]
     return rows["water_total"] + taken - rows["water_work"] - start
 
 

@@ -23,8 +23,8 @@ SERIES = (
     Quantity("water_viscous", "J", label="energy that viscosity has taken since the start"),
     Quantity("water_diffusive", "J", label="energy that diffusion of density has taken since the start"),
     Quantity("water_work", "J", label="work of the walls on the water, and on the air, since the start"),
-    Quantity("water_held", "J", label="energy that the walls' dummy particles hold, since the start"),
-    Quantity("water_excess", "1", label="largest deviation of the density from that at rest"),
+    Quantity("water_wall_energy", "J", label="energy stored in the wall particles since the start"),
+    Quantity("water_density_deviation", "1", label="largest relative deviation of the density, |ρ/ρ0 − 1|"),
     Quantity("water_dense", "1", label="share of the water whose density deviates by more than 3 %"),
     Quantity("gauge_pressure", "Pa", label="pressure at each gauge", per="gauge"),
     Quantity("gauge_peak", "Pa", label="highest pressure at each gauge since the last sample", per="gauge"),
@@ -38,9 +38,9 @@ SERIES = (
 # What the watch asks and no recording has: the number of a particle that has left the tank.
 ESCAPED = Quantity("water_escaped", "1", label="number of a particle outside the tank", never=-1.0)
 FRAMES = (
-    Quantity("water_place", "m", directions, "place of each particle of water in the tank", per="drop"),
+    Quantity("water_position", "m", directions, "position of each particle of water in the tank", per="water_particle"),
     Quantity(
-        "water_velocity", "m/s", directions, "velocity of each particle of water, relative to the tank", per="drop"
+        "water_velocity", "m/s", directions, "velocity of each particle, relative to the tank", per="water_particle"
     ),
-    Quantity("water_pressure", "Pa", label="pressure of each particle of water", per="drop"),
+    Quantity("water_pressure", "Pa", label="pressure of each particle of water", per="water_particle"),
 )

@@ -168,7 +168,7 @@ class LiquidMatter(Matter):
                 place[w, own] += moved @ way[w, k, : len(one.mass)]
                 velocity[w, own] = moved @ fast[w, k, : len(one.mass)]
         still = np.zeros(start.shape)
-        return {"water_place": place, "water_velocity": velocity, "water_pressure": still}
+        return {"water_position": place, "water_velocity": velocity, "water_pressure": still}
 
 
 def make_liquid(scene, setting: Setting) -> LiquidMatter | None:

@@ -69,7 +69,7 @@ def test_real_vectors_move_both_as_scalars_do(monkeypatch, rule, scene):
     one, other = found
     assert one["contacts"].min() > 2 and np.abs(one["water_velocity"]).max() > 1e-3
     rough = 2e-4 if scene.get("precision") == "mixed" else 1e-7  # rounding, which collisions have made grow
-    for name in ("position", "velocity", "water_place", "water_velocity", "wall_force", "pose"):
+    for name in ("position", "velocity", "water_position", "water_velocity", "wall_force", "pose"):
         size = np.abs(one[name]).max()
         np.testing.assert_allclose(other[name], one[name], atol=rough * size, rtol=rough, err_msg=name)
 

@@ -83,7 +83,7 @@ def _liveliest(bed: Bed) -> np.ndarray | None:
     frames = [frame for _, frame in spread([bed], 25)]
     speeds = [_speed(bed, frame) for frame in frames]
     row = int(np.nanargmax([np.nanpercentile(speed, 95.0) for speed in speeds]))
-    place = bed.water_place(frames[row]) if bed.empty else bed.position(frames[row])
+    place = bed.water_position(frames[row]) if bed.empty else bed.position(frames[row])
     fast = speeds[row] >= np.nanpercentile(speeds[row], 90.0)
     return np.nanmedian(place[fast], axis=0)
 

@@ -52,7 +52,7 @@ def paint_air(
     picture: np.ndarray, camera: Camera, grid: Grid, bed: Bed, frame: int, colouring: Colouring, under: tuple
 ) -> None:
     """Paint a bed's air over a picture, in place, also under the water's surface; water is painted over it."""
-    place, wet = bed.drops("air_place", frame), bed.water_place(frame)
+    place, wet = bed.drops("air_position", frame), bed.water_position(frame)
     there, drops = np.isfinite(place).all(axis=1), np.isfinite(wet).all(axis=1)
     pool = bed.footage.water
     volume, of_water = pool.air[bed.world][there], pool.volume[bed.world][drops]

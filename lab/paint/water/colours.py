@@ -54,7 +54,7 @@ def turning(beds: Sequence[Bed]) -> Colouring:
     """Vorticity relative to the tank, red counter-clockwise and blue clockwise."""
 
     def values(bed: Bed, frame: int) -> np.ndarray:
-        return vorticity(bed.water_place(frame), bed.drops("water_velocity", frame), bed.footage.water.spacing)
+        return vorticity(bed.water_position(frame), bed.drops("water_velocity", frame), bed.footage.water.spacing)
 
     top = round_up(max(ends(beds, lambda bed, frame: np.abs(values(bed, frame)), FEW)[1], 1e-2))
     return Colouring("vorticity in the tank (1/s)", -top, top, table("coolwarm", low=0.02), values)

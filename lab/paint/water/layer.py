@@ -58,7 +58,7 @@ class WaterLayer:
         self, picture: np.ndarray, camera: Camera, bed: Bed, frame: int, basin: Basin, under: tuple
     ) -> None:
         """Paint the water of one tank."""
-        place = bed.water_place(frame)
+        place = bed.water_position(frame)
         there = np.zeros(len(place), dtype=bool)
         there[basin.drops] = np.isfinite(place[basin.drops]).all(axis=1)
         if not there.any():

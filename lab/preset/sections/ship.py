@@ -83,12 +83,12 @@ class Ship:
     ] = None
     freedom: Annotated[Literal[*FREEDOM], Doc("In which directions she is free to move.")] = "sway-heave-roll"
     coupling: Annotated[
-        Literal["instant", "as_K"],
-        Doc("Whether she answers to the load of each instant, or takes steps with an extrapolated load, see `as_K`."),
+        Literal["instant", "staggered"],
+        Doc("Whether she answers to the load of each instant, or takes steps with an extrapolated load (staggered)."),
     ] = "instant"
-    coupling_step: Annotated[float, Unit("s"), Interval(ge=1e-4, le=0.1), Doc('Her step with coupling = "as_K".')] = (
-        0.01
-    )
+    coupling_step: Annotated[
+        float, Unit("s"), Interval(ge=1e-4, le=0.1), Doc('Her step with coupling = "staggered".')
+    ] = 0.01
     radiation: Annotated[Literal["memory", "at-frequency", "none"], Doc("How the waves that she makes act on her.")] = (
         "memory"
     )

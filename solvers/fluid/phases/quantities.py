@@ -7,10 +7,12 @@ SERIES = (
     Quantity("air_kinetic", "J", label="kinetic energy of the air, relative to the tank"),
     Quantity("air_mean_pressure", "Pa", label="mean pressure of the air, over that outside"),
     Quantity("air_volume", "m^3", label="volume of the air"),
-    Quantity("air_excess", "1", label="largest deviation of the air's density from that at rest"),
+    Quantity("air_density_deviation", "1", label="largest relative deviation of the air's density, |ρ/ρ0 − 1|"),
 )
 FRAMES = (
-    Quantity("air_place", "m", directions, "place of each particle of air in the tank", per="puff"),
-    Quantity("air_velocity", "m/s", directions, "velocity of each particle of air, relative to the tank", per="puff"),
-    Quantity("air_pressure", "Pa", label="pressure of each particle of air, over that outside", per="puff"),
+    Quantity("air_position", "m", directions, "position of each particle of air in the tank", per="air_particle"),
+    Quantity(
+        "air_velocity", "m/s", directions, "velocity of each particle of air, relative to the tank", per="air_particle"
+    ),
+    Quantity("air_pressure", "Pa", label="pressure of each particle of air, over that outside", per="air_particle"),
 )

@@ -118,7 +118,7 @@ def test_a_hull_of_one_section_floats_as_that_section(tmp_path):
 
 def test_steps_too_long_for_a_stiff_mooring_are_refused():
     """A barge of 108 kg/m and some added mass on a spring of 1 MPa: the message names the key and the longest step."""
-    given = {"ship.rig.sway_spring": "1 MPa", "ship.coupling": "as_K"}
+    given = {"ship.rig.sway_spring": "1 MPa", "ship.coupling": "staggered"}
     with pytest.raises(LabError, match=r"ship.coupling_step: 100 ms is not stable .* 0.0\d+ s; take at most \d\d ms"):
         vessels(load("ship/barge-two-tanks", given | {"ship.coupling_step": "100 ms"}).resolved)
     ship = vessels(load("ship/barge-two-tanks", given | {"ship.coupling_step": "10 ms"}).resolved)[0]

@@ -19,7 +19,7 @@ DROP = {"radius": "100 mm", "centre": ["0 mm", "250 mm"], "spacing": "20 mm"}
 def of(folder, water: dict, places: np.ndarray, velocities: np.ndarray | None = None, **more) -> dict:
     """What is measured on frames of places (F, n, 2) m and velocities m/s."""
     preset = pool(**NOWHERE, water=water, **more)
-    frames = {"water_place": places[:, None]}
+    frames = {"water_position": places[:, None]}
     if velocities is not None:
         frames["water_velocity"] = velocities[:, None]
     energy = np.linspace(2.0, 1.9, len(TIME))[:, None]

@@ -181,19 +181,19 @@ def test_calm_water_in_a_tank_that_moves_has_no_frequency(tmp_path):
 def test_the_highest_water_reaches_half_a_spacing_beyond_a_particle(tmp_path):
     place = np.zeros((3, 1, DROPS, 2))
     place[1, 0, 4, 1] = 0.3
-    found = of(tmp_path, {"water_place": place})["highest_water"]
+    found = of(tmp_path, {"water_position": place})["highest_water"]
     assert found.value == pytest.approx(310.0) and found.uncertainty == pytest.approx(10.0) and not found.note
     place[2, 0, 0, 1] = 0.48
-    assert of(tmp_path / "b", {"water_place": place})["highest_water"].note == "it reaches the lid"
+    assert of(tmp_path / "b", {"water_position": place})["highest_water"].note == "it reaches the lid"
 
 
 def test_the_account_lacks_what_energies_and_work_do_not_explain(tmp_path):
     work, taken = 4.0 * TIME, 1.0 * TIME
     total = 100.0 + work - taken - 0.5 * TIME
     series = {"water_total": total, "water_work": work, "water_viscous": 0.75 * taken, "water_diffusive": 0.25 * taken}
-    values = of(tmp_path, water_kinetic=np.full(len(TIME), 2.0), water_excess=1e-3 * TIME, **series)
+    values = of(tmp_path, water_kinetic=np.full(len(TIME), 2.0), water_density_deviation=1e-3 * TIME, **series)
     assert values["water_residual"].value == pytest.approx(100.0 * 5.0 / (40.0 + 10.0 + 2.0))
-    assert values["water_excess"].value == pytest.approx(1.0)
+    assert values["water_density_deviation"].value == pytest.approx(1.0)
     whole = of(tmp_path / "b", **{**series, "water_total": 100.0 + work - taken})
     assert whole["water_residual"].value == pytest.approx(0.0, abs=1e-9)
 

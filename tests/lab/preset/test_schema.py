@@ -14,6 +14,7 @@ from lab.preset import formats
 from lab.preset.editor import json_schema, text_of_schema
 from lab.preset.fields import NAME, Taken, walk
 from lab.preset.find import QUICK, load, names
+from lab.preset.recorded import from_table, to_table
 from lab.preset.reference import range_of, reference, value_of
 from lab.preset.schema import Preset
 from solvers.machine.marks import Interval
@@ -159,6 +160,17 @@ def test_a_preset_without_format_and_water_reads_the_same(tmp_path):
 def test_a_format_that_is_not_known_is_refused(said, tmp_path):
     with pytest.raises(LabError, match=r"mine.toml: format: this version reads presets of format 3 \(got"):
         load(written(tmp_path, f"format = {said}\n{BARGE}"))
+
+
+@pytest.mark.parametrize("in_file", [True, False])
+def test_the_staggered_coupling_is_read_under_its_earlier_name(in_file, tmp_path):
+    with pytest.warns(formats.OldFormat, match=r'mine.toml: ship.coupling: "as_K" is called "staggered" now'):
+        said = '[ship]\ncoupling = "as_K"\n' if in_file else ""
+        read = load(written(tmp_path, BARGE + said), {} if in_file else {"ship.coupling": "as_K"}).resolved
+    assert read == load(written(tmp_path, BARGE), {"ship.coupling": "staggered"}).resolved
+    kept = to_table(read)
+    kept["ship"]["coupling"] = "as_K"
+    assert from_table(kept) == read
 
 
 OLD = {

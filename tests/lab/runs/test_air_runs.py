@@ -71,7 +71,7 @@ def goes_on(path, whole, folder, monkeypatch, pauses: int) -> None:
     resume_run(folder, video=False, quiet=True)
     with open_recording(whole) as one, open_recording(folder) as other:
         assert one.status == other.status == "complete"
-        for name in ("air_place", "air_pressure", "water_place"):
+        for name in ("air_position", "air_pressure", "water_position"):
             assert one.frames[name][:].tobytes() == other.frames[name][:].tobytes(), name
 
 
@@ -79,11 +79,11 @@ def test_both_phases_are_recorded_apart(cup):
     with open_recording(cup.parent / "run") as recording:
         series, frames = recording.series, recording.frames
         assert recording.volume.shape == (1, 40) and recording.air_volume.shape == (1, 60)
-        assert frames["water_place"].shape[1:] == (1, 40, 2) and frames["air_place"].shape[1:] == (1, 60, 2)
+        assert frames["water_position"].shape[1:] == (1, 40, 2) and frames["air_position"].shape[1:] == (1, 60, 2)
         assert series["air_volume"][0, 0] == pytest.approx(0.06 * 0.036, rel=0.01)
         assert (series["air_centre"][:, 0, 1] > series["water_centre"][:, 0, 1]).all()
         assert np.ptp(series["water_centre"][:, 0, 0]) > 1e-3
-        assert recording.labelled(frames=slice(0, 1))["air_velocity"].dims == ("time", "world", "puff", "axis")
+        assert recording.labelled(frames=slice(0, 1))["air_velocity"].dims == ("time", "world", "air_particle", "axis")
         assert "Pa" in recording.quantities["air_mean_pressure"].unit
 
 

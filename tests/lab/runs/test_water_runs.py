@@ -77,7 +77,7 @@ def test_a_run_records_the_water_and_its_gauges(swayed):
         assert scene.particles == 40 and recording.grain_steps == 40 * round(0.8 / recording.step)
         assert series["gauge_pressure"].shape == (81, 1, 1) and series["level_depth"].shape == (81, 1, 1)
         assert series["level_depth"][0, 0, 0] == pytest.approx(0.024, rel=5e-3)
-        assert recording.frames["water_place"].shape == (21, 1, 40, 2)
+        assert recording.frames["water_position"].shape == (21, 1, 40, 2)
         weight = 1000.0 * 9.81 * 0.06 * 0.024  # of a slab one metre thick
         assert -series["wall_force"][1:, 0, 1].mean() == pytest.approx(weight, rel=0.05)
         assert np.ptp(series["water_centre"][:, 0, 0]) > 1e-3
@@ -87,7 +87,7 @@ def test_the_report_names_what_was_computed_and_measured(swayed, cup):
     summary, page = json.loads((swayed / "summary.json").read_text()), (swayed / "summary.md").read_text()
     expected = {"gauge_largest_P1", "gauge_impulse_P1", "run_up_L1", "highest_water", "sloshing_frequency"}
     expected |= {"gauge_mean_P1", "crest_L1", "trough_scatter_L1", "force_peak_F1", "force_impulse_F1", "gauge_std_F1"}
-    assert expected | {"water_residual", "water_excess"} <= summary["measures"].keys()
+    assert expected | {"water_residual", "water_density_deviation"} <= summary["measures"].keys()
     floor = summary["measures"]["gauge_mean_F1"]
     assert floor["value"] == pytest.approx(1000.0 * 9.81 * 0.06 * 0.024, rel=0.05) and floor["unit"] == "N"
     assert summary["measures"].keys() == available_measures(load(cup)).keys()

@@ -48,7 +48,7 @@ def test_a_cylinder_falls_by_the_force_less_its_weight():
 def test_the_surface_is_half_a_spacing_over_the_highest_particle_near():
     side = np.arange(0.002, 2.0, 0.0038)
     place = np.stack(np.meshgrid(side, 0.0019 + 0.0038 * np.arange(10)), axis=-1).reshape(1, -1, 2)
-    one = ran("validation/wet-bed", frames_time=np.array([0.0]), frames_water_place=[place])
+    one = ran("validation/wet-bed", frames_time=np.array([0.0]), frames_water_position=[place])
     np.testing.assert_allclose(surfaces.surface(one, 0, np.array([500.0, 900.0])), 38.0, atol=0.1)
 
 

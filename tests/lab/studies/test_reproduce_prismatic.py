@@ -35,7 +35,7 @@ def hit(preset: str, frequency: float, steady: float, hits: list[float], changes
         struck[np.abs(time - (time[-1] - (back + 0.5) / frequency)) < 0.02] = high
     shown = np.stack([np.full_like(time, steady), struck, np.zeros_like(time)], axis=-1)[:, None]
     place = np.where(struck[::10, None, None, None] > 0.0, [-0.15, 0.155], 0.0) + np.zeros((1, 1, 100, 1))
-    of = {"time": time, "gauge_pressure": shown, "frames_time": time[::10], "frames_water_place": place}
+    of = {"time": time, "gauge_pressure": shown, "frames_time": time[::10], "frames_water_position": place}
     one = ran(preset, {"water.spacing": "3.5 mm", **(changes or {})}, **of)
     one.recording.volume = np.full((1, 100), 1e-6)
     one.measures["highest_water"] = Value(100.0, "mm")

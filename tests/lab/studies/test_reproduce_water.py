@@ -91,7 +91,7 @@ def test_energies_of_a_cycle_are_told_over_those_of_shallow_water_that_rolls_ali
     when, *courses = impact.shallow_energy(tank, preset.motion.history.history, duration)
     energy, work = (np.interp(time, when, course) for course in courses)
     scale = preset.water.density * preset.tank.thickness
-    series = {"water_total": 2.0 * energy, "water_work": work, "water_held": -0.1 * work}
+    series = {"water_total": 2.0 * energy, "water_work": work, "water_wall_energy": -0.1 * work}
     one = ran("sloshing/impact", time=time, **{name: scale * course[:, None] for name, course in series.items()})
     found = {name: impact.NUMBERS[name][1](one, about) for name in impact.NUMBERS if not name.startswith("imp")}
     assert (found["given_over_shallow"], found["stored_over_shallow"]) == pytest.approx((1.0, 2.0), rel=1e-4)
@@ -176,7 +176,7 @@ def test_a_dam_breaks_front_has_the_speed_of_its_foremost_particle_before_the_wa
     one = ran(
         "validation/dam-break",
         frames_time=frames,
-        frames_water_place=np.stack([np.stack([place, place], axis=1)[:, None, :]] * 2, axis=2)[:, 0, :, :][:, None],
+        frames_water_position=np.stack([np.stack([place, place], axis=1)[:, None, :]] * 2, axis=2)[:, 0, :, :][:, None],
         time=time,
         gauge_pressure=np.repeat(star[:, None, None], 4, axis=2),
         gauge_peak=np.repeat(star[:, None, None], 4, axis=2),
@@ -203,7 +203,7 @@ def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
     """A dam break that ends at 3.1 √(H/g) and has not left its place."""
     time, still = np.arange(0.0, 0.55, 1e-3), np.zeros((550, 1, 4))
     places = np.full((110, 1, 2, 2), -0.21)
-    frames = {"frames_time": np.arange(0.0, 0.55, 0.005), "frames_water_place": places}
+    frames = {"frames_time": np.arange(0.0, 0.55, 0.005), "frames_water_position": places}
     one = ran("validation/dam-break", time=time, gauge_pressure=still, gauge_peak=still, **frames)
     rows = experiments("water")["dam-break"].tell({"30 layers": [one]}).rows
     assert {(row.ours, row.verdict) for row in rows} == {("not found", Verdict.CANNOT_TELL)}

@@ -64,7 +64,7 @@ def seen(drops, time, tilt, depth=0.1):
     place = drops["position"].copy()
     place[..., 1] *= 1.0 - np.tan(tilt) * place[..., 0] / depth
     moving = np.stack([np.full(place.shape[:2], 0.1), np.zeros(place.shape[:2])], axis=-1)
-    drawn = {"water_place": place, "water_velocity": moving, "water_pressure": 9810.0 * (depth - place[..., 1])}
+    drawn = {"water_position": place, "water_velocity": moving, "water_pressure": 9810.0 * (depth - place[..., 1])}
     rows = {"pose": np.array([[0.0, 0.0, tilt]]), "water_centre": np.array([[0.01 * time, 0.05]])}
     rows |= {"gauge_peak": np.array([[500.0 + time]]), "level_depth": np.array([[depth - 0.15 * np.tan(tilt)]])}
     return LiveFrame(time, {**rows, "part": np.zeros((1, 0, 2)), "part_turn": np.zeros((1, 0))}, drawn, UNTOUCHED)
@@ -156,12 +156,12 @@ def test_live_water_flows_to_the_lower_side(preset, tmp_path):
     """The tank tilts counter-clockwise, its port side down: water gathers at negative y."""
     loaded = steerable(load(preset))
     with Live(loaded, tmp_path / "run", Progress(quiet=True)) as live:
-        before = live.frame().grains["water_place"][0, :, 0].mean()
+        before = live.frame().grains["water_position"][0, :, 0].mean()
         live.set("tilt", 0.3)
         live.set("tilt_rate", 1.0)
         for _ in range(60):
             live.advance()
-        after = live.frame().grains["water_place"][0, :, 0].mean()
+        after = live.frame().grains["water_position"][0, :, 0].mean()
         live.close()
     assert abs(before) < 1e-3
     assert after < -0.02

@@ -52,9 +52,9 @@ def test_water_rests_under_air(pool):
     assert abs(over) < 0.03 * stiff
     np.testing.assert_allclose(rows["level_depth"][0], DEPTH, atol=0.25 * spacing)
     assert rows["air_volume"][0] == pytest.approx(WIDTH * (HEIGHT - DEPTH), rel=0.02)
-    middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
+    middle = 0.5 * (state["water_position"][0, :, 1].max() + state["air_position"][0, :, 1].min())
     assert abs(middle - DEPTH) < 0.5 * spacing
-    assert state["air_place"].shape[1] == gas.sum()
+    assert state["air_position"].shape[1] == gas.sum()
 
 
 def test_a_gauge_that_sees_more_air_than_water_shows_the_air(pool):
@@ -101,7 +101,7 @@ def test_drops_fall_together_with_the_pool_below(pool):
     ).matters
     run = again(pool, made)
     run.advance(round(0.5 / run.dt))
-    place = run.snapshot()["water_place"][0]
+    place = run.snapshot()["water_position"][0]
     near = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) < 1.5 * spacing
     assert near.sum(axis=1).min() > 1
     assert place[:, 1].max() < DEPTH + spacing
@@ -171,7 +171,7 @@ def test_a_gauge_with_a_bubble_before_it_shows_the_waters_pressure(pool):
         run.advance(20)
         shown.append(run.observe()["gauge_pressure"][0, 0])
         state = run.snapshot()
-        place, pressure = state["water_place"][0], state["water_pressure"][0]
+        place, pressure = state["water_position"][0], state["water_pressure"][0]
         near = np.linalg.norm(place - corner, axis=1) < 2.0 * run.scene.fluid.water.spacing
         about.append((pressure + 1000.0 * GRAVITY * place[:, 1])[near].mean())
     assert np.mean(shown) == pytest.approx(np.mean(about), rel=0.1)
@@ -220,7 +220,7 @@ def test_energy_is_accounted_for(run):
     run.advance(400)
     end = run.observe()
     lost = start["water_total"] - end["water_total"]
-    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
     assert lost > 0.0
     np.testing.assert_allclose(taken, lost, rtol=0.03)
     run.close()  # the slow ones that follow find its kernels
@@ -237,7 +237,7 @@ def test_other_ways_of_running_give_the_same(changes):
         other = Simulation(made, threads=1, arch="cpu")
         other.advance(60)
         state = other.snapshot()
-        place.append(np.concatenate([state["water_place"][0], state["air_place"][0]]))
+        place.append(np.concatenate([state["water_position"][0], state["air_position"][0]]))
         other.close()
     tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.fluid.water.spacing)
@@ -257,7 +257,7 @@ def test_water_rests_under_air_with_cohesion():
     run = Simulation(scene(sound_speed=sound, smoothing=1.34, alpha=0.07, air=air), threads=1, arch="cpu")
     run.advance(round(1.0 / run.dt))
     rows, state, spacing = run.observe(), run.snapshot(), run.scene.fluid.water.spacing
-    middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
+    middle = 0.5 * (state["water_position"][0, :, 1].max() + state["air_position"][0, :, 1].min())
     assert abs(middle - DEPTH) < 0.5 * spacing
     assert rows["gauge_pressure"][0, 0] == pytest.approx(1000.0 * GRAVITY * DEPTH, abs=0.1 * pull)
 

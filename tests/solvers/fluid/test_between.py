@@ -122,7 +122,7 @@ def test_a_rolling_tank_works_on_water_that_its_walls_hold_back():
     run.advance(600)
     end = run.observe()
     viscous = (end["water_viscous"] - start["water_viscous"])[0]
-    taken = sum((end[name] - start[name])[0] for name in ("water_viscous", "water_diffusive", "water_held"))
+    taken = sum((end[name] - start[name])[0] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
     work = (end["water_work"] - start["water_work"])[0]
     assert viscous > 0.1 * abs(work)  # else nothing was tried
     gain = (end["water_total"] - start["water_total"])[0]

@@ -74,7 +74,7 @@ def test_water_tank_and_bodies_share_momentum_and_energy(run):
     load, weight = end["wall_force"][0, :2], np.array([0.0, -GRAVITY * mass])
     scale = steps * run.dt * np.abs(load).max()
     np.testing.assert_allclose(after - before, steps * run.dt * (weight - load), atol=1e-12 * scale)
-    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
     work, gain = end["water_work"] - start["water_work"], end["water_total"] - start["water_total"]
     assert np.abs(end["part_force"]).min() > 0.0 and work > 4.0  # else nothing was tried
     np.testing.assert_allclose(end["part_work"].sum(axis=1), work)
@@ -90,12 +90,12 @@ def test_bodies_in_still_water_bear_its_pressure(run):
     difference, and no water passes it. The load on the tank and the bodies is the weight of the water, which rests.
     """
     moved(run, 0.0).observe()
-    start = run.snapshot()["water_place"][0]
+    start = run.snapshot()["water_position"][0]
     run.advance(100)
     run.observe()
-    beyond = run.snapshot()["water_place"][0, :, 0] > FLAP[0][0]
+    beyond = run.snapshot()["water_position"][0, :, 0] > FLAP[0][0]
     run.advance(500)
-    rows, mass, place = run.observe(), momentum(run)[1], run.snapshot()["water_place"][0]
+    rows, mass, place = run.observe(), momentum(run)[1], run.snapshot()["water_position"][0]
     run.close()  # the slow ones that follow find its kernels
     np.testing.assert_array_equal(place[:, 0] > FLAP[0][0], beyond)
     assert np.linalg.norm(place - start, axis=1).max() < SPACING
@@ -125,7 +125,7 @@ def test_a_plate_is_as_tight_as_a_wall():
     places = []
     for run in runs:
         run.advance(200)
-        places.append(run.snapshot()["water_place"][0])
+        places.append(run.snapshot()["water_position"][0])
     np.testing.assert_allclose(places[0][~beyond], places[1], atol=1e-4 * SPACING)
     assert places[0][beyond, 0].min() > 0.25 * SPACING
     runs[0].observe()

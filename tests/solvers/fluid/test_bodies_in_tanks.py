@@ -49,9 +49,9 @@ def test_water_round_a_part_does_not_feel_the_parts_and_the_water_of_another_tan
     both = moved([(low, body), (high, plate)])
     alone = [moved([(low, body)]), moved([(high, Body(BAFFLE, motions=TURN))])]
     ends = len(low), len(low) + len(high)
-    for k, (own, one) in enumerate(zip(np.split(both["water_place"][0], ends)[:2], alone, strict=True)):
-        assert np.ptp(one["water_place"][0] - (low, high)[k]["position"], axis=0).min() > 0.1 * SPACING
-        np.testing.assert_allclose(own, one["water_place"][0], atol=1e-6 * SPACING)
+    for k, (own, one) in enumerate(zip(np.split(both["water_position"][0], ends)[:2], alone, strict=True)):
+        assert np.ptp(one["water_position"][0] - (low, high)[k]["position"], axis=0).min() > 0.1 * SPACING
+        np.testing.assert_allclose(own, one["water_position"][0], atol=1e-6 * SPACING)
         np.testing.assert_allclose(both["loads"][[k, 2 + k]], one["loads"], atol=1e-6 * np.abs(one["loads"]).max())
     total = both["loads"].sum(axis=0)
     np.testing.assert_allclose(total, both["wall_force"][0], atol=1e-12 * np.abs(total).max())

@@ -45,7 +45,7 @@ def test_small_particles_move_in_32_bits_as_in_64(spacing):
         scene = still(30 * spacing, 15 * spacing, 10 * spacing, 10, schedule=schedule, precision=precision)
         run = Simulation(scene, threads=1, arch="cpu")
         run.advance(40)
-        places.append(run.snapshot()["water_place"])
+        places.append(run.snapshot()["water_position"])
         run.close()
     np.testing.assert_allclose(places[1], places[0], rtol=0.0, atol=1e-3 * spacing)
 
@@ -64,7 +64,7 @@ def test_lists_are_made_anew_at_the_same_steps_after_a_resume():
         run.advance(40)
         found.append(run.snapshot() | {"built": run.water.particles.built[1].to_numpy()})
         run.close()
-    for name in ("built", "water_place", "water_velocity"):
+    for name in ("built", "water_position", "water_velocity"):
         np.testing.assert_array_equal(found[0][name], found[1][name])
 
 

@@ -49,7 +49,7 @@ def test_what_has_left_an_open_tank_may_fall_as_fast_as_it_will(poured):
     poured.advance(round(0.5 / poured.dt))
     seen = poured.snapshot()
     assert seen["water_velocity"][0, 0] == pytest.approx([0.0, -0.5 * GRAVITY], abs=0.02)  # Mach 1.2
-    assert seen["water_place"][0, 0, 1] == pytest.approx(-0.125 * GRAVITY, abs=0.02)
+    assert seen["water_position"][0, 0, 1] == pytest.approx(-0.125 * GRAVITY, abs=0.02)
     assert np.abs(seen["water_velocity"][0, 1:]).max() < 0.5
 
 
@@ -70,7 +70,7 @@ def test_what_comes_back_into_an_open_tank_is_watched_again(poured):
     drops["position"][0, 0], drops["velocity"][0, 0, 1] = (0.0, high), -3.0
     run = again(poured, poured.scene.holding(replace(poured.scene.fluid, particles=drops)))
     run.advance(2)
-    assert run.snapshot()["water_place"][0, 0, 1] < high
+    assert run.snapshot()["water_position"][0, 0, 1] < high
     with pytest.raises(BadState, match=r"water moves at [23.]+.* m/s, Mach 0\.[67].*z = 0\.0[456]"):
         run.advance(200)
 

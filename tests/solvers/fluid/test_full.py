@@ -57,7 +57,7 @@ def test_water_closes_up_behind_a_square_and_accounts_for_its_energy(run):
     edge = 0.5 * SPACING
     inside = (np.abs(near[:, 0]) < 0.5 * WIDTH - edge) & (near[:, 1] > edge) & (near[:, 1] < HEIGHT - edge)
     beside = ((near < moved.min(axis=0) - edge) | (near > moved.max(axis=0) + edge)).any(axis=1)
-    away = cKDTree(shot["water_place"][0]).query(near[inside & beside])[0]
+    away = cKDTree(shot["water_position"][0]).query(near[inside & beside])[0]
     assert (away > 0.75 * SPACING).mean() < 0.01
     assert abs(residual(rows, residual(start, 0.0))[0]) < 0.02 * rows["water_work"][0]
 

@@ -30,7 +30,7 @@ def drop(rate: float, across: int = 20, **changes):
 def positions(scene, steps: int) -> tuple[Simulation, np.ndarray]:
     run = Simulation(scene, threads=1, arch="cpu")
     run.advance(steps)
-    return run, run.snapshot()["water_place"][0]
+    return run, run.snapshot()["water_position"][0]
 
 
 STRAIN, PULL = 10.0, Pull(10.0)  # 1/s
@@ -89,7 +89,7 @@ def test_walls_work_on_the_water_of_a_moving_tank():
     start, steps = run.observe(), 600
     run.advance(steps)
     end = run.observe()
-    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
     work = end["water_work"] - start["water_work"]
     gain = end["water_total"] - start["water_total"]
     assert abs(work[0]) > 5.0 * abs(taken[0])  # else nothing was tried
@@ -101,7 +101,7 @@ def test_a_strained_drop_becomes_the_ellipse_of_theory(strained):
     duration, run = 0.06, free(strained, drop(STRAIN))
     steps = round(duration / run.dt)
     run.advance(steps)
-    place = run.snapshot()["water_place"][0]
+    place = run.snapshot()["water_position"][0]
     a, b, s, count = 0.1, 0.1, STRAIN, 4000
     dt = steps * run.dt / count
     for _ in range(count):
@@ -121,7 +121,7 @@ def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory(stra
     run, wide, time = again(strained, scene), [], []
     for _ in range(60):
         run.advance(max(1, round(0.005 / run.dt)))
-        square = (run.snapshot()["water_place"][0] ** 2).mean(axis=0)
+        square = (run.snapshot()["water_position"][0] ** 2).mean(axis=0)
         wide.append(square[0] - square[1])
         time.append(run.time)
     wide, time = np.array(wide), np.array(time)

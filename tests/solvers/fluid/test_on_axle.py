@@ -77,7 +77,7 @@ def account(run: Simulation, steps: int) -> tuple[np.ndarray, np.ndarray, np.nda
         row = run.observe()
         tank_gain = row["axle_energy"][0] - start["axle_energy"][0]
         water = row["water_total"] - start["water_total"]
-        taken = row["water_viscous"] + row["water_diffusive"] + row["water_held"]
+        taken = row["water_viscous"] + row["water_diffusive"] + row["water_wall_energy"]
         rows.append((tank_gain + (water + taken)[0], tank_gain - row["axle_works"][0, 0], row["water_work"][0]))
         assert row["axle_works"][0, 0] == pytest.approx(-row["water_work"][0], rel=1e-3)
     return tuple(np.array(rows).T)

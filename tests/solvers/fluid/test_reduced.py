@@ -99,7 +99,7 @@ def test_momentum_and_energy_in_a_tank_that_sways(pool):
     run.advance(400)
     end = run.observe()
     lost = start["water_total"] - end["water_total"] + end["water_work"] - start["water_work"]
-    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
     run.close()
     np.testing.assert_allclose(taken, lost, rtol=0.03)
 

@@ -44,10 +44,10 @@ def swings(scene: Scene) -> tuple[float, float]:
             for _ in range(60):
                 run.advance(every)
                 state = run.snapshot()
-                below = np.maximum(DEPTH - state["water_place"][0, :, 1], 0.0)
+                below = np.maximum(DEPTH - state["water_position"][0, :, 1], 0.0)
                 still = 1000.0 * SOUND**2 * hydrostatic_excess(below, G, SOUND, "linear")
                 error = state["water_pressure"][0] - still
-                amplitudes.append((error * shape(state["water_place"][0, :, 1])).mean())
+                amplitudes.append((error * shape(state["water_position"][0, :, 1])).mean())
             found.append(float(np.std(amplitudes)))
     finally:
         run.close()

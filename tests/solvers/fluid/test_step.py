@@ -69,7 +69,7 @@ def run() -> Simulation:
 def course(run) -> np.ndarray:
     """The places that others must find. The shared simulation ends here, so that those after it find their kernels."""
     again(run, disturbed(3)).advance(60)
-    place = run.snapshot()["water_place"][0]
+    place = run.snapshot()["water_position"][0]
     run.close()
     return place
 
@@ -136,7 +136,7 @@ def test_energy_is_accounted_for(run):
     run.advance(400)
     end = run.observe()
     lost = start["water_total"] - end["water_total"]
-    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
     assert 0.5 * start["water_kinetic"] < lost
     np.testing.assert_allclose(taken, lost, rtol=0.03)
 
@@ -231,7 +231,7 @@ def test_water_at_rest_weighs_on_the_floor_and_its_gauges(run):
     np.testing.assert_allclose([right[0], -left[0]], side, atol=0.1 * 1000.0 * GRAVITY * DEPTH * DEPTH / ROWS)
     np.testing.assert_allclose(floor[1], -mass * GRAVITY, rtol=2e-3)
     assert rows["water_kinetic"][0] < 1e-4 * 1000.0 * GRAVITY * DEPTH * WIDTH * DEPTH
-    place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
+    place, pressure = (run.snapshot()[name][0] for name in ("water_position", "water_pressure"))
     wanted = 1000.0 * GRAVITY * (DEPTH - place[:, 1])
     np.testing.assert_allclose(pressure, wanted, atol=0.5 * 1000.0 * GRAVITY * DEPTH / ROWS)  # half a layer
 
@@ -306,7 +306,8 @@ def test_other_ways_of_running_give_the_same_water(course, changes):
     scenes = [disturbed(seed, **UNTOLD | changes) for seed in ((4, 3) if "f32" in changes.values() else (3,))]
     other = Simulation(Scene.joined(scenes), threads=1 + len(units), arch="cpu", **units)
     other.advance(60)
-    places, spacing, precision = other.snapshot()["water_place"], other.scene.fluid.water.spacing, other.scene.precision
+    places, spacing = other.snapshot()["water_position"], other.scene.fluid.water.spacing
+    precision = other.scene.precision
     place = places[-1]
     assert len(places) == 1 or np.abs(places[0] - place).max() > 0.05 * spacing
     other.close()
@@ -322,10 +323,10 @@ def test_worlds_go_on_when_one_leaves(course):
     whole.advance(20)
     state, axes = whole.state(), whole.axes()
     whole.advance(15)
-    place = whole.snapshot()["water_place"]
+    place = whole.snapshot()["water_position"]
     whole.close()
     left = Simulation(Scene.joined(scenes[1:]), threads=1, arch="cpu")
     left.restore({name: without_worlds(values, axes[name], 3, slice(0, 1)) for name, values in state.items()})
     left.advance(15)
-    np.testing.assert_array_equal(left.snapshot()["water_place"], place[1:])
+    np.testing.assert_array_equal(left.snapshot()["water_position"], place[1:])
     left.close()

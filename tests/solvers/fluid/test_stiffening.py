@@ -17,7 +17,7 @@ from tests.oracles.water import GRAVITY, again, box
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
 SOUND, STIFF, STRIDE, BACKGROUND = 12.5, 100.0, 8, 30.0
 FROM = 0.05  # s
-KEPT = "water_place", "water_velocity", "air_place", "air_velocity"
+KEPT = "water_position", "water_velocity", "air_position", "air_velocity"
 
 
 def scene() -> Scene:

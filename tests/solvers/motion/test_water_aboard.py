@@ -31,7 +31,7 @@ ACCOUNT = (
     ("water_total", 1.0),
     ("water_viscous", 1.0),
     ("water_diffusive", 1.0),
-    ("water_held", 1.0),
+    ("water_wall_energy", 1.0),
     ("water_work", -1.0),
 )
 ADDED, DAMPED = np.diag([40.0, 52.0, 0.2]), np.diag([20.0, 100.0, 0.1])

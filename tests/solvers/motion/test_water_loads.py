@@ -24,7 +24,7 @@ WIDTH, DEPTH = 0.4, 0.1
 LIQUID = SloshingLiquid(WIDTH, DEPTH, (0.0, DEPTH), 1000.0, GRAVITY)
 SHARES = np.array([0.4, 0.55, 0.7, 0.85, 1.15, 1.25, 1.35, 1.5])  # of the first natural frequency
 SIZE, RAMP = 1e-3, 6.0  # m, s
-ACCOUNT = {"water_total": 1.0, "water_viscous": 1.0, "water_diffusive": 1.0, "water_held": 1.0}
+ACCOUNT = {"water_total": 1.0, "water_viscous": 1.0, "water_diffusive": 1.0, "water_wall_energy": 1.0}
 
 
 def swayed(model: str, rows: int) -> Scene:

@@ -28,7 +28,7 @@ def overturned(one: Outcome, _: object) -> float:
     """
     recording = one.recording
     last, _ = _last(one, recording.frames["time"][:])
-    spacing, place = recording.preset.water.spacing, recording.frames["water_place"]
+    spacing, place = recording.preset.water.spacing, recording.frames["water_position"]
     return float(np.mean([has_air_below(place[k, 0].astype(float), spacing) for k in np.flatnonzero(last)]))
 
 

@@ -55,7 +55,7 @@ def swing(one: Outcome) -> Swing:
     recording = one.recording
     motion, preset, series = recording.preset.motion.roll, recording.preset, recording.series
     time, roll = between(series["time"][:, None])[:, 0], between(series["pose"][:, :1, 2])[:, 0]
-    place, volume = recording.frames["water_place"][0, 0].astype(float), recording.volume[0]
+    place, volume = recording.frames["water_position"][0, 0].astype(float), recording.volume[0]
     mass = preset.water.density * preset.thickness * volume
     arm = place - np.array(motion.centre)
     turning, height = float((mass * (arm**2).sum(axis=1)).sum()), float((mass * arm[:, 1]).sum())

@@ -66,7 +66,7 @@ class Scales:
 def front_course(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
     """Times and places of the front: the foremost particle and half a spacing, beyond the column's end."""
     recording, unit = one.recording, Scales(one)
-    places = recording.frames["water_place"]
+    places = recording.frames["water_position"]
     foremost = [np.nanmax(places[k][0, :, 0].astype(float)) for k in range(len(recording.frames["time"]))]
     ahead = np.array(foremost) + 0.5 * spacing(recording.preset) - unit.end
     return recording.frames["time"][:] / unit.time, ahead / unit.length

@@ -114,7 +114,7 @@ def made_at_walls(one: Outcome, about: float) -> float:
 
     Dummies hold no energy for good, so that what they give is made by the scheme.
     """
-    time, held, work = (one.recording.series[key] for key in ("time", "water_held", "water_work"))
+    time, held, work = (one.recording.series[key] for key in ("time", "water_wall_energy", "water_work"))
     ends = about + 0.5 * PERIOD * np.array([-1.0, 1.0])
     had, has = (np.interp(ends, time, course[:, 0], right=np.nan) for course in (held, work))
     return float(-(had[1] - had[0]) / (has[1] - has[0]))

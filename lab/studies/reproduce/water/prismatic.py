@@ -139,7 +139,7 @@ def wet_cycles(outcomes: Sequence[Outcome], given: float) -> Value:
     one = outcomes[0]
     frames, volume = one.recording.frames, one.recording.volume[0]
     gauge, last = np.array(one.recording.preset.gauges[f"P{given:.0f}"].place), _last(one, frames["time"])
-    away = (np.linalg.norm(frames["water_place"][k][0] - gauge, axis=1) for k in np.flatnonzero(last))
+    away = (np.linalg.norm(frames["water_position"][k][0] - gauge, axis=1) for k in np.flatnonzero(last))
     wet = np.array([volume[each < NEAR].sum() >= WET for each in away])
     return over_worlds([part.mean() for part in np.array_split(wet, CYCLES)], "")
 

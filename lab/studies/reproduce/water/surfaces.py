@@ -33,7 +33,7 @@ STARTED = 0.882  # s, in the record, when the piston begins to move
 
 def surface(one: Outcome, frame: int, at: np.ndarray) -> np.ndarray:
     """Height (mm) of the highest water at places (mm), by the particles within a spacing; NaN where there is none."""
-    place = 1e3 * np.asarray(one.recording.frames["water_place"][frame][0], dtype=float)
+    place = 1e3 * np.asarray(one.recording.frames["water_position"][frame][0], dtype=float)
     size = 1e3 * spacing(one.recording.preset)
     near = np.abs(place[:, 0] - at[:, None]) < size
     highest = np.where(near, place[:, 1], -np.inf).max(axis=1) + 0.5 * size
@@ -175,7 +175,7 @@ def profiles(found: Found) -> Figure:
     for axes, number in zip(panels, PROFILES, strict=True):
         when = (0.156 if np.isnan(start) else start) + (number - 1) * BETWEEN
         frame = int(np.abs(time - when).argmin())
-        place = 1e3 * np.asarray(one.recording.frames["water_place"][frame][0], dtype=float)
+        place = 1e3 * np.asarray(one.recording.frames["water_position"][frame][0], dtype=float)
         axes.plot(place[:, 0], place[:, 1], ".", ms=0.8, color=BLUE, alpha=0.4)
         if (read := profile(number)) is not None:
             axes.plot(*read, color="black", lw=1.0)

@@ -109,7 +109,7 @@ def flight(_: bool) -> Found:
     for motions in ((), MOTIONS):
         with simulated(drop(motions)) as run:
             list(looks(run, [FLIGHT]))
-            place, pose = run.snapshot()["water_place"][0], run.observe()["pose"][0]
+            place, pose = run.snapshot()["water_position"][0], run.observe()["pose"][0]
             places.append((place, pose[:2] + place @ turning(pose[2]).T))
     (alone, _), (inside, over) = places
     away = 1e3 * np.abs(inside - alone).max()
@@ -181,7 +181,7 @@ def held(_: bool) -> Found:
         with simulated(scene(water, start, upright @ turn.T, motions=[motions], step=STEP)) as run:
             run.origin = 0.0 if outside else LONG_TILTED
             run.advance(STEPS)
-            places.append(run.snapshot()["water_place"][0] @ turn)
+            places.append(run.snapshot()["water_position"][0] @ turn)
     moved = 1e3 * np.linalg.norm(places[0] - drops["position"][0], axis=1).max()
     error = np.abs(places[0] - places[1]).max()
     line = Line.off("places", "the turned outline", error, 1e-9, "rounding, grown by the water's motion", "m")

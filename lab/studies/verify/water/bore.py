@@ -139,12 +139,12 @@ def run_up(rows: int) -> Bore:
     with simulated(start) as run:
         for time in looks(run, np.arange(0.0, DURATION, EVERY * np.sqrt(DEPTH / G))):
             state, sums = run.snapshot(), run.observe()
-            (y, z), speed = (state["water_place"][0] + [0.5 * length, 0.0]).T, state["water_velocity"][0]
+            (y, z), speed = (state["water_position"][0] + [0.5 * length, 0.0]).T, state["water_velocity"][0]
             kinetic = 0.5 * DENSITY * volume * (speed**2).sum(axis=1)
             squeezed = 0.5 * (state["water_pressure"][0] / (DENSITY * SOUND)) ** 2
             energy.append((kinetic + DENSITY * volume * (G * z + squeezed))[within].sum())
             given = 0.5 * DENSITY * G * DEPTH**2 * JUMP.stream * time
-            taken = (sums[name][0] for name in ("water_viscous", "water_diffusive", "water_held"))
+            taken = (sums[name][0] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
             place = front(y, volume, length)
             row = place, -sums["wall_force"][0, 0], given - energy[-1] + energy[0], *taken
             found.append((time, *row, *behind(place, y, volume, kinetic)))

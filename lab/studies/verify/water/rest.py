@@ -62,7 +62,7 @@ def rested(vessel: Vessel, rows: int, duration: float) -> Rest:
         mass = float(run.water.particles.mass.to_numpy().sum())
         for _ in looks(run, times):
             rows_now, state = run.observe(), run.snapshot()
-            below = np.maximum(DEPTH - state["water_place"][0, :, 1], 0.0)
+            below = np.maximum(DEPTH - state["water_position"][0, :, 1], 0.0)
             error = state["water_pressure"][0] - exact(below, water)
             errors.append(error / head)
             gauged.append((rows_now["gauge_pressure"][0, 0] - exact(deep, water)) / head)

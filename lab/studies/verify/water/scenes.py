@@ -91,7 +91,7 @@ def looks(run: Simulation, times: Sequence[float]) -> Iterator[float]:
 def seen(run: Simulation) -> tuple[np.ndarray, np.ndarray]:
     """Places (n, 2) m and velocities (n, 2) m/s of the first world's particles now."""
     state = run.snapshot()
-    return state["water_place"][0], state["water_velocity"][0]
+    return state["water_position"][0], state["water_velocity"][0]
 
 
 def kept(run: Simulation) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

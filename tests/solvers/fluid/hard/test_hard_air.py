@@ -55,7 +55,7 @@ def test_a_film_of_air_under_a_flat_impact(sound):
     rows = course(filled(block(0.05), air_sound=sound), np.arange(1, 11) * 0.04)
     start, exchanged = residual(rows[0], 0.0)[0], rows[-1]["water_viscous"][0] + rows[-1]["water_diffusive"][0]
     assert residual(rows[-1], start)[0] < 0.01 * exchanged
-    place = rows[-1]["water_place"][0]
+    place = rows[-1]["water_position"][0]
     assert (np.abs(place[:, 0]) < 0.5 * WIDTH + SPACING).all() and (place[:, 1] > -SPACING).all()
 
 
@@ -63,7 +63,7 @@ def test_a_tank_that_is_turned_over():
     """By half a turn in two seconds: in the end the water lies on what was the lid."""
     tilt = Tilt(rate=0.5 * np.pi, angle=np.pi, centre=(0.0, 0.5 * HEIGHT))
     rows = course(filled(motions=[(tilt,)]), np.arange(1, 13) * 0.5)
-    heights = rows[-1]["water_place"][0, :, 1]
+    heights = rows[-1]["water_position"][0, :, 1]
     assert np.mean(heights > 0.5 * HEIGHT) > 0.95
     assert rows[-1]["air_volume"][0] == pytest.approx(WIDTH * 0.5 * HEIGHT, rel=0.03)
 
@@ -86,14 +86,14 @@ def test_a_bubble_of_four_spacings_rises():
         < 2.0 * SPACING
     )
     rows = course(scene, np.arange(1, 11) * 0.1)
-    assert rows[-1]["air_place"][0, own, 1].mean() > 0.13
+    assert rows[-1]["air_position"][0, own, 1].mean() > 0.13
 
 
 def test_a_hundred_cycles_do_not_mix_the_phases():
     """Sloshing a third deep, driven near its first frequency: no water stays in the air, nor air in the water."""
     sway = Sway(0.004, 1.2)
     rows = course(filled(level=0.1, motions=[(sway,)]), np.arange(1, 26) * (100.0 / 1.2 / 25.0))
-    water, air = rows[-1]["water_place"][0], rows[-1]["air_place"][0]
+    water, air = rows[-1]["water_position"][0], rows[-1]["air_position"][0]
     near = np.hypot(*(air[:, None] - water[None]).transpose(2, 0, 1)) < 1.6 * SPACING
     drowned = near.sum(axis=1) > 6
     lone = near.sum(axis=0) > 6

@@ -40,7 +40,7 @@ def course(scene: Scene, times: Sequence[float]) -> list[dict[str, np.ndarray]]:
 def unaccounted(rows: list[dict[str, np.ndarray]]) -> np.ndarray:
     """Energy of each look that nothing accounts for, over all that was exchanged until then."""
     start = residual(rows[0], 0.0)
-    names = "water_viscous", "water_diffusive", "water_held"
+    names = "water_viscous", "water_diffusive", "water_wall_energy"
     found = []
     for row in rows[1:]:
         exchanged = sum(np.abs(row[name][0]) for name in names) + np.abs(row["water_work"][0])
@@ -50,7 +50,7 @@ def unaccounted(rows: list[dict[str, np.ndarray]]) -> np.ndarray:
 
 def level_of(row: dict[str, np.ndarray], scene: Scene, left: float, right: float) -> float:
     """Mean level (m) of the water between two places (m), by the volume there."""
-    here = (row["water_place"][0, :, 0] > left) & (row["water_place"][0, :, 0] < right)
+    here = (row["water_position"][0, :, 0] > left) & (row["water_position"][0, :, 0] < right)
     return float(scene.fluid.particles["volume"][0, here].sum() / (right - left))
 
 
@@ -142,7 +142,7 @@ def test_a_full_tank_sways_for_twenty_thousand_steps():
     fastest = 2.0 * np.pi * sway.frequency * sway.amplitude
     speeds = np.array([np.linalg.norm(row["water_velocity"][0], axis=1).max() for row in rows[1:]])
     assert speeds.max() < 0.2 * fastest
-    moved = np.linalg.norm(rows[-1]["water_place"][0] - scene.fluid.particles["position"][0], axis=1)
+    moved = np.linalg.norm(rows[-1]["water_position"][0] - scene.fluid.particles["position"][0], axis=1)
     assert moved.max() < 2.0 * scene.fluid.water.spacing
 
 
@@ -154,7 +154,7 @@ def test_one_particle_of_depth():
     scene = tank_of(box(0.4, 0.1), 0.01, 1, motions=[(Sway(0.02, 0.8),)], soft_start=1.0)
     rows = course(scene, np.arange(1, 11) * 1.0)
     assert np.abs(rows[-1]["water_centre"][0, 0]) < 0.2
-    assert rows[-1]["water_place"][0, :, 1].min() > 0.0
+    assert rows[-1]["water_position"][0, :, 1].min() > 0.0
     assert np.abs(unaccounted(rows)).max() < 0.01
     levels = np.array([2.0 * row["water_centre"][0, 1] for row in rows]) / scene.fluid.water.spacing
     assert levels[0] == pytest.approx(1.0, abs=0.01) and levels.min() > 0.7

@@ -46,7 +46,7 @@ def rested(rows: int, duration: float) -> tuple[float, float, float]:
             rows_now, state = run.observe(), run.snapshot()
             if time < 0.5 * duration:
                 continue
-            wet, dry = state["water_place"][0], state["air_place"][0]
+            wet, dry = state["water_position"][0], state["air_position"][0]
             high = [wet[np.digitize(wet[:, 0], bins) == k, 1].max() for k in range(1, len(bins))]
             low = [dry[np.digitize(dry[:, 0], bins) == k, 1].min() for k in range(1, len(bins))]
             off.append(np.abs(0.5 * np.add(high, low) - DEPTH).max() / water.spacing)
@@ -139,7 +139,7 @@ class Slug:
             for _ in looks(run, np.linspace(1.2, 2.0, 17) / rate):
                 state = run.snapshot()
                 pressure = state["air_pressure"][0]
-                way = state["water_place"][0][:, 1].mean() - COLUMN - 0.5 * self.thick
+                way = state["water_position"][0][:, 1].mean() - COLUMN - 0.5 * self.thick
                 thinner = state["water_pressure"][0].mean() / (1000.0 * made.fluid.water.sound_speed**2) * self.thick
                 shares = [1.0 + pressure[part].mean() / self.at_rest for part in (upper, ~upper)]
                 volumes = [1.0 - (side * way - 0.5 * thinner) / COLUMN for side in (1.0, -1.0)]
@@ -185,7 +185,7 @@ def balance(_: bool) -> Found:
         end = run.observe()
         change = np.abs(mass @ (kept(run)[1] - before)).max() / (mass @ np.hypot(*before.T))
     lost = start["water_total"][0] - end["water_total"][0]
-    taken = sum(end[name][0] - start[name][0] for name in ("water_viscous", "water_diffusive", "water_held"))
+    taken = sum(end[name][0] - start[name][0] for name in ("water_viscous", "water_diffusive", "water_wall_energy"))
     return Found(
         [
             Line.off("momentum, of Σ m |u|", "kept", change, 1e-12, "pair forces are equal and opposite"),

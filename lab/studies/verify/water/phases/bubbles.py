@@ -122,7 +122,7 @@ def risen(rows: int) -> Rise:
     with simulated(bubble(rows)) as run:
         for time in looks(run, np.arange(0.04, RISING + 0.01, 0.04)):
             state = run.snapshot()
-            place, velocity = state["air_place"][0], state["air_velocity"][0]
+            place, velocity = state["air_position"][0], state["air_velocity"][0]
             found.append(
                 (time, place[:, 1].mean(), velocity[:, 1].mean(), roundness(place, run.scene.fluid.water.spacing))
             )
