@@ -118,7 +118,7 @@ def _beside(numbers: np.ndarray, unit: str, known: float) -> Value:
 
 def angular_momentum(recording: Recording) -> np.ndarray:
     """Angular momentum (F, W) per mass, m²/s, of the water about its centre of mass."""
-    place, velocity = (recording.frames[f"water_{name}"][:].astype(float) for name in ("place", "velocity"))
+    place, velocity = (recording.frames[f"water_{name}"][:].astype(float) for name in ("position", "velocity"))
     arm = place - place.mean(axis=2, keepdims=True)
     return (arm[..., 0] * velocity[..., 1] - arm[..., 1] * velocity[..., 0]).mean(axis=2)
 
@@ -146,7 +146,7 @@ def vortex_amplitude(recording: Recording) -> np.ndarray:
     corner, sides = np.array(tank.corners).min(axis=0), np.array(tank.extent)
     left = []
     for frame in range(len(recording.frames["time"])):
-        place, velocity = (recording.frames[f"water_{name}"][frame].astype(float) for name in ("place", "velocity"))
+        place, velocity = (recording.frames[f"water_{name}"][frame].astype(float) for name in ("position", "velocity"))
         shape = np.array([vortices(world - corner, sides) for world in place])
         left.append((velocity * shape).sum(axis=(1, 2)) / (shape**2).sum(axis=(1, 2)))
     return np.array(left) / recording.preset.water.flow.vortices

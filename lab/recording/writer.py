@@ -256,9 +256,8 @@ class _Table:
         self.names = tuple(self._datasets)
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self.names}
         self._row = {name: (data.shape[1:], data.dtype) for name, data in self._datasets.items()}  # slow in h5py
-        grow = (*self._datasets.values(), self._checks)
+        self._written, grow = rows, (*self._datasets.values(), self._checks)
         self._row_bytes = sum(row_bytes(data.shape[1:], data.dtype) for data in grow)
-        self._written = rows
         self.chunk_bytes = sum(row_bytes(data.chunks, data.dtype) for data in grow)
         self.short = any(len(data) < rows for data in grow)
 

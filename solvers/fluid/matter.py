@@ -260,7 +260,7 @@ class WaterMatter(Matter):
         p = self.particles
         found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
         told = {
-            "place": np.stack(found[0:2], axis=-1),
+            "position": np.stack(found[0:2], axis=-1),
             "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6], self.gas),
             "pressure": self.census.whole(self.constants.pressures(found[6], self.gas), found[0:2]),
         }

@@ -102,6 +102,6 @@ class _Pool:
         for instant in times:
             self.run.advance(round(instant / self.run.dt) - self.run.steps)
             now = self.run.snapshot()
-            held = (now[f"water_{name}"][0] for name in ("place", "velocity", "pressure"))
+            held = (now[f"water_{name}"][0] for name in ("position", "velocity", "pressure"))
             found.append(Frame(self.run.time, *held))
         return found

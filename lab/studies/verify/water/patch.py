@@ -46,7 +46,7 @@ def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
         mass = run.water.particles.read(run.water.particles.mass)[0][0]
         for time in looks(run, (0.0, *TIMES)):
             now = run.snapshot()
-            place, velocity, pressed = (now[f"water_{name}"][0] for name in ("place", "velocity", "pressure"))
+            place, velocity, pressed = (now[f"water_{name}"][0] for name in ("position", "velocity", "pressure"))
             turning.append(mass @ (place[:, 0] * velocity[:, 1] - place[:, 1] * velocity[:, 0]))
             if time > 0.0:
                 places.append(place)

@@ -74,7 +74,7 @@ def drop_at_rest(rows: int) -> float:
 def jump(run: Simulation) -> float:
     """Mean pressure (Pa) within the drop less that round it, both well off the surface."""
     state, reach = run.snapshot(), 1.5 * run.scene.fluid.water.length
-    away = [np.hypot(*(state[f"{phase}_place"][0] - [0.0, 0.5 * SIDE]).T) for phase in ("water", "air")]
+    away = [np.hypot(*(state[f"{phase}_position"][0] - [0.0, 0.5 * SIDE]).T) for phase in ("water", "air")]
     inner = state["water_pressure"][0][away[0] < RADIUS - reach]
     return float(inner.mean() - state["air_pressure"][0][away[1] > RADIUS + reach].mean())
 
