@@ -306,6 +306,7 @@ class Simulation:
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned of the same scene, on whatever processor. Raises ValueError for any other."""
+        state = kept.renamed(state)
         anew = kept.take(self, state)
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
         if anew:

@@ -11,13 +11,13 @@ from lab.preset.sections.parts import parts_of
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
 from lab.preset.sections.water.tanks import Pool, outline_at
 from solvers.fluid.given import Fluid, Water
-from solvers.fluid.phases.reduced import Reduced
+from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.flow import compressed, stirred, torsion, vortex_pressure, vortices
 from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share
 from solvers.fluid.start.plates import is_slanted
-from solvers.fluid.start.rest import at_rest, hydrostatic_excess, uncompressed
+from solvers.fluid.start.rest import at_rest, hydrostatic_deviation, uncompressed
 from solvers.fluid.start.support import depths
 from solvers.fluid.timestep import steps_of_water
 from solvers.scene import Scene
@@ -78,7 +78,7 @@ def _set_going(preset: Preset, drops: np.ndarray) -> None:
         place, sides = place - np.array(preset.tank.corners).min(axis=0), np.array(preset.tank.extent)
         drops["velocity"] = flow.vortices * vortices(place, sides)
         pressure = flow.vortices**2 * vortex_pressure(place, sides)
-    drops["excess"] = compressed(pressure, water)
+    drops["deviation"] = compressed(pressure, water)
 
 
 def _air_of(preset: Preset, water: Water) -> np.ndarray:
@@ -93,8 +93,11 @@ def _let_go(preset: Preset, drops: np.ndarray, parts: Sequence[Part]) -> None:
     """Give each of the particles (n,) of a region the density of its depth, none where it stands on nothing."""
     water, (polygon, level), place = preset.liquid, bounds(preset), drops["position"]
     tank = Tank(np.array(preset.tank.corners), preset.thickness, preset.tank.open_edges)
-    depth, weight = depths(place, polygon, level, tank, parts, water.spacing), Reduced.weight(water, preset.run.gravity)
-    drops["excess"] = hydrostatic_excess(depth, weight, water.sound_speed, water.state)
+    depth, weight = (
+        depths(place, polygon, level, tank, parts, water.spacing),
+        ReducedPressure.weight(water, preset.run.gravity),
+    )
+    drops["deviation"] = hydrostatic_deviation(depth, weight, water.sound_speed, water.state)
 
 
 def _cut_off(preset: Preset, pool: Pool, drops: np.ndarray, parts: Sequence[Part]) -> np.ndarray:

@@ -2,9 +2,9 @@
 
 From the turning points of her roll, the one at the release among them, as long as swings are above NOISE of the widest:
 decay_frequency: π over the mean time between crossings of the roll at rest. Error: standard error of these times.
-decay_damping, decay_quadratic: ζ and b (per rad) of φ̈ + 2ζω₀φ̇ + b φ̇|φ̇| + ω₀²(φ − φ_r) = 0. In half a cycle of a mean
-amplitude φ it loses ln(φ_n/φ_n+1) = π ζ_e/√(1 − ζ_e²), ζ_e = ζ + 4bφ/3π (energy of a cycle; Himeno 1981). So averaged
-over a cycle (Krylov & Bogoliubov 1937) the amplitude falls to
+decay_damping, decay_quadratic: ζ and b (per rad) of φ̈ + 2ζω₀φ̇ + b φ̇|φ̇| + ω₀²(φ − φ_r) = 0. In half a cycle of a
+mean amplitude φ it loses ln(φ_n/φ_n+1) = π ζ_e/√(1 − ζ_e²), ζ_e = ζ + 4bφ/3π (energy of a cycle; Himeno 1981). So
+averaged over a cycle (Krylov & Bogoliubov 1937) the amplitude falls to
     φ_n = φ_0 e^(−sn)/(1 + 4 b φ_0 (1 − e^(−sn))/(3 s)), s = π ζ/√(1 − ζ²)
 after n half cycles, exactly for b = 0, else to second order in ζ and bφ_0: b comes out too large by 2 % at ζ = 0.1, or
 at bφ_0 = 0.4. It is fitted by least squares to the widths φ_n + φ_n+1 of the swings from one turning point to the next;

@@ -55,7 +55,7 @@ def compression(preset: Preset, scene: Scene) -> Rows:
     The mass of all tanks is exact; that of each is told where some are deeper.
     """
     fluid = scene.fluid
-    dense = fluid.water.density * (1.0 + fluid.particles["excess"][0, : fluid.wet])
+    dense = fluid.water.density * (1.0 + fluid.particles["deviation"][0, : fluid.wet])
     if not fluid.moved or np.ptp(dense) < EVEN * fluid.water.density:
         return []
     low, high, mean = (show(float(one), "kg/m^3") for one in (dense.min(), dense.max(), preset.water.density))
@@ -95,7 +95,7 @@ def models(scene: Scene) -> Rows:
         ("shifting", water.shifting),
         *([("surface", surface(water.air))] if water.air else []),
         ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
-        *([("walls before and behind", f"{show(water.apart, 'm')} apart")] if water.apart else []),
+        *([("end walls, before and behind", f"{show(water.gap, 'm')} apart")] if water.gap else []),
     ]
 
 

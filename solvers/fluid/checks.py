@@ -18,13 +18,16 @@ LIFTED = 'water.shifting = "delta-plus" lifts water below a surface; take "delta
 def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
     """What `refuse_state` asks of the particles in a world of a `solvers.fluid.matter.WaterMatter` at `time` (s)."""
     p = matter.particles
-    found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
-    velocity = matter.census.relative(time, found[0:2], found[2:4], found[4:6], matter.gas)[world]
+    found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation, p.eigenvalue)
+    velocity = matter.diagnostics.relative(time, found[0:2], found[2:4], found[4:6], matter.gas)[world]
     place, speed = np.stack(found[0:2], axis=-1)[world], np.linalg.norm(velocity, axis=1)
     return {
         "place": place,
         "speed": np.where(outside(place, matter.order.grid.watched), 0.0, speed),
-        **{name: values[world] for name, values in (("excess", found[6]), ("span", found[7]), ("gas", matter.gas))},
+        **{
+            name: values[world]
+            for name, values in (("deviation", found[6]), ("eigenvalue", found[7]), ("gas", matter.gas))
+        },
     }
 
 
@@ -32,11 +35,11 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
     """Raise BadState for a world whose particles made the watch stop it at `time` (s).
 
     `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, zero for those that have left an
-    open one, "excess" (n,) of density, "span" (n,), and "gas" (n,), 1 for air; `sound` is c0 in m/s.
+    open one, "deviation" (n,) of density, "eigenvalue" (n,), and "gas" (n,), 1 for air; `sound` is c0 in m/s.
     """
     remedy = REMEDY
-    place, speed, excess = (particles[name] for name in ("place", "speed", "excess"))
-    bad = ~(np.isfinite(speed) & np.isfinite(excess) & np.isfinite(place).all(axis=1))
+    place, speed, deviation = (particles[name] for name in ("place", "speed", "deviation"))
+    bad = ~(np.isfinite(speed) & np.isfinite(deviation) & np.isfinite(place).all(axis=1))
     if bad.any():
         placed = bad & np.isfinite(place).all(axis=1)
         worst = (placed if placed.any() else bad).argmax()
@@ -45,9 +48,9 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
         worst = speed.argmax()
         what, at = f"water moves at {speed[worst]:.3g} m/s, Mach {speed[worst] / sound:.2g},", place[worst]
     else:
-        worst = (np.abs(excess) / allowed(particles["span"])).argmax()
+        worst = (np.abs(deviation) / allowed(particles["eigenvalue"])).argmax()
         whose, remedy = ("air", SQUEEZED) if particles["gas"][worst] else ("water", REMEDY)
-        what, at = f"the {whose}'s density is off by {100.0 * excess[worst]:.3g} %", place[worst]
+        what, at = f"the {whose}'s density is off by {100.0 * deviation[worst]:.3g} %", place[worst]
     raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {remedy}.")
 
 
@@ -80,7 +83,7 @@ def outside(place: np.ndarray, box: tuple[np.ndarray, np.ndarray] | None) -> np.
 
 
 def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarray:
-    """Energy (W,) J that nothing accounts for: gain, losses and what dummies hold, less the work of the walls."""
+    """Energy (W,) J that nothing accounts for: gain, losses and what walls store, less their work."""
     taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_wall_energy"]
     return rows["water_total"] + taken - rows["water_work"] - start
 

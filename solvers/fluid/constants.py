@@ -9,13 +9,13 @@ from solvers.fluid.kernels import KERNELS
 from solvers.fluid.phases.adiabatic import Adiabatic
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.phases.numbers import of_air
-from solvers.fluid.phases.reduced import Reduced
+from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
-from solvers.fluid.surface.consistency import Consistency
-from solvers.fluid.surface.fullness import Fullness
+from solvers.fluid.surface.reinitialisation import Reinitialisation
+from solvers.fluid.surface.void_indicator import VoidIndicator
 from solvers.fluid.viscosity import VISCOSITY
-from solvers.fluid.walls.between import Between
+from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.fluid.walls.layers import FIRM
 from solvers.machine.state import State
 
@@ -41,9 +41,9 @@ class Constants:
         self.two, self.gas, self.cohesion = water.air is not None, Adiabatic(), Cohesion()
         self.tense = self.two and water.air.tension > 0.0
         self.coheres = self.two and water.air.cohesion > 0.0
-        self.reduced, self.modified = Reduced(), self.two and water.air.reduced is not None
+        self.reduced, self.modified = ReducedPressure(), self.two and water.air.reduced is not None
         self.accounted = not (self.tense or self.coheres)  # for whether all energy has a name
-        self.pulled, self.rubbed = water.pull is not None, water.apart > 0.0
+        self.pulled, self.end_walls = water.pull is not None, water.gap > 0.0
         self.numbers = numbers = self.numbers_of(water, gravity)
         self.viscous = numbers["strength"] > 0.0 or (self.two and numbers["air_strength"] > 0.0)
         self.at = {name: place for place, name in enumerate(numbers)}
@@ -62,7 +62,7 @@ class Constants:
             "density": water.density,
             "stiffness": water.density * sound**2,  # ρ0 c0², Pa
             "background": water.background,
-            "thinnest": float(self.state.excess(-water.background / (water.density * sound**2))),
+            "thinnest": float(self.state.deviation(-water.background / (water.density * sound**2))),
             "spread": water.delta * length * sound,  # δ h c0, m²/s
             "strength": self.viscosity.strength(water),
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
@@ -73,12 +73,12 @@ class Constants:
             "shift": self.shifting.strength(water) * slope if self.shifting.acts else 0.0,
             "shift_most": 0.5 * water.speed,
             "shift_scale": value / self.kernel.printed(water.spacing, length),
-            "rub": Between.rate(water),  # 1/s
+            "end_walls": EndWallFriction.rate(water),  # 1/s
             "pull": pull.rate**2 if pull else 0.0,
             "pull_y": pull.centre[0] if pull else 0.0,
             "pull_z": pull.centre[1] if pull else 0.0,
         }
-        numbers |= Fullness.numbers(self.kernel, length, sound) | Consistency.numbers(self.kernel, water)
+        numbers |= VoidIndicator.numbers(self.kernel, length, sound) | Reinitialisation.numbers(self.kernel, water)
         return numbers | (of_air(water, gravity, numbers, self.viscosity) if self.two else {})
 
     def become(self, water: Water, gravity: float) -> None:
@@ -101,7 +101,7 @@ class Constants:
 
     @ti.func
     def pressure_of_air(self, s):
-        """The pressure (Pa) of air at an excess of density, a single number."""
+        """The pressure (Pa) of air at a density deviation, a single number."""
         pressure = self.get("air_stiffness") * self.gas.share(s)
         if ti.static(self.coheres):
             pressure += self.get("cohesion") * self.cohesion.share(s)
@@ -132,28 +132,29 @@ class Constants:
         else:
             return ti.max(pressure, 0.0)
 
-    def pressures(self, excess: np.ndarray, gas: np.ndarray) -> np.ndarray:
-        """Pressures (Pa) over that of the surroundings, for excesses of density and phases of the same shape."""
-        water = self.numbers["stiffness"] * self.state.pressure(excess)
+    def pressures(self, deviation: np.ndarray, gas: np.ndarray) -> np.ndarray:
+        """Pressures (Pa) over that of the surroundings, for density deviations and phases of the same shape."""
+        water = self.numbers["stiffness"] * self.state.pressure(deviation)
         if not self.two:
             return water
-        thin = np.maximum(excess, -0.999)
+        thin = np.maximum(deviation, -0.999)
         air = self.numbers["air_stiffness"] * self.gas.pressure(thin)
         return np.where(gas > 0.5, air + self.cohesion.pressure(self.numbers["cohesion"], thin), water)
 
     @ti.func
     def hardness(self, square, firm, gas: ti.template()):
-        """What a dummy adds at the squared distance (m²), per volume, so that a thin layer does not pass the wall.
+        """What a wall particle adds at the squared distance (m²), per volume: a thin layer does not pass the wall.
 
-        A spring up to the distance `firm` (m), that of the dummy from its wall's face, for pressure alone does not hold
-        water that parts along a wall it nears. With air, `firm` is the depth of each layer: all of them hold air.
+        A spring up to the distance `firm` (m), that of the wall particle from its wall's face, for pressure alone does
+        not hold water that parts along a wall it nears. With air, `firm` is the depth of each layer: all of them hold
+        air.
         """
         away = ti.sqrt(square + self.get("floor"))
         if ti.static(self.two):
             layer = firm / self.get("spacing") - (0.5 + FIRM)
             for_water = ti.select(layer * layer < 0.0625, firm, 0.0 * firm)
             spring = ti.max(((1.0 - gas) * for_water + gas * firm) / away - 1.0, 0.0)
-            # Air that is driven deep comes near to dummies, which must not throw it back at many times its speed.
+            # Air that is driven deep comes near to walls, which must not throw it back at many times its speed.
             return self.of("hard", gas) * ti.min(spring, 1.0 + (1.0 - gas) * PULL)
         else:
             return self.get("hard") * ti.max(firm / away - 1.0, 0.0)

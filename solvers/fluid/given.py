@@ -8,10 +8,10 @@ import numpy as np
 from solvers.machine.marks import Doc, EachWorld, Interval, NotOfBed, Unit
 from solvers.tank.given import Given
 
-# A particle as it starts: position (m) and velocity over the earth (m/s) in the tank's axes, excess s = ρ/ρ0 − 1 of
-# density, volume (m²) in the plane, and whether it is air. A motion that starts abruptly finds the water at rest.
+# A particle as it starts: position (m) and velocity over the earth (m/s) in the tank's axes, density deviation s = ρ/ρ0
+# − 1, volume (m²) in the plane, and whether it is air. A motion that starts abruptly finds the water at rest.
 PARTICLE = np.dtype(
-    [("position", float, 2), ("velocity", float, 2), ("excess", float), ("volume", float), ("gas", bool)]
+    [("position", float, 2), ("velocity", float, 2), ("deviation", float), ("volume", float), ("gas", bool)]
 )
 
 
@@ -56,7 +56,7 @@ class Air:
     `tension` (N/m) of the surface between the phases;
     `vent`: the area (m²) of openings to the outside, a metre of thickness; `interface`: the name of what acts between
     the phases, and `cohesion` the pressure X (Pa) of that which has one; `reduced`: the height (m) of the surface at
-    rest, if pressures are over those of this fluid at rest (`solvers.fluid.phases.reduced`), else None.
+    rest, if pressures are over those of this fluid at rest (`solvers.fluid.phases.reduced_pressure`), else None.
     """
 
     density: float = 1.2
@@ -79,17 +79,17 @@ class Water:
     `spacing` Δx (m) of the particles and `smoothing` h/Δx; `density` ρ0 (kg/m³); `sound_speed` c0 (m/s) of the weakly
     compressible liquid. `kernel`, `state`, `diffusion` and `viscosity` are names of the registries. `delta` is the
     strength δ of the diffusion of density; `alpha` that of the artificial viscosity, or `kinematic` ν (m²/s) that of
-    laminar flow. `slip`: water slides freely along walls, else it sticks to them. `apart`: the distance (m) of walls
-    before and behind that hold it back, too (`solvers.fluid.walls.between`), 0: there are none. `full`: the tank has no
-    free surface, so that walls may pull, and `background` is the pressure (Pa) that all of the fluid bears besides
-    (Adami, Hu & Adams 2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their distances, for
-    water of up to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in
-    space. `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z",
-    along which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name
-    of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing.
-    `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share `swing_damping`
-    of the critical damping. `added_mass`: "layer" or "none", whether a ship has the answer of the walls' dummies on her
-    own side.
+    laminar flow. `slip`: water slides freely along walls, else it sticks to them. `gap`: the gap (m) between the end
+    walls, before and behind, that hold it back, too (`solvers.fluid.walls.end_walls`), 0: there are none. `full`: the
+    tank has no free surface, so that walls may pull, and `background` is the pressure (Pa) that all of the fluid bears
+    besides (Adami, Hu & Adams 2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their
+    distances, for water of up to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it
+    moves freely in space. `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes,
+    "y" or "z", along which space repeats itself with the tank's width or height, so that it has no walls there.
+    `start`: the name of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides,
+    None: nothing. `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share
+    `swing_damping` of the critical damping. `added_mass`: "layer" or "none", whether a ship has the answer of the wall
+    particles on her own side.
     """
 
     spacing: float
@@ -104,7 +104,7 @@ class Water:
     alpha: float = 0.01
     kinematic: float = 0.0
     slip: bool = True
-    apart: float = 0.0
+    gap: float = 0.0
     full: bool = False
     background: float = 0.0
     shifting: str = "none"

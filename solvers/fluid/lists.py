@@ -8,7 +8,7 @@ import taichi as ti
 
 from solvers.fluid.constants import Constants
 from solvers.fluid.order import BINS, ROWS, Order
-from solvers.fluid.state import UNUSED, Listing, Particles, Shares
+from solvers.fluid.state import UNUSED, Listing, Particles, WorkRanges
 from solvers.fluid.walls.bodies import Bodies
 from solvers.machine.state import State, padded
 from solvers.machine.units import Units
@@ -29,8 +29,8 @@ class Lists:
 
     An entry is a slot in all blocks of all worlds, and where space is periodic the image in which it is seen. `travel`
     (units,) m bounds how far any particle of a unit has moved since the lists were built, `last` (m) how far in the
-    last step; `skin` (units,) m was allowed for. `walls` are the dummies' first slots by key. In `beside` those of the
-    tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
+    last step; `skin` (units,) m was allowed for. `walls` are the wall particles' first slots by key. In `beside` those
+    of the tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
     """
 
     def __init__(
@@ -38,13 +38,13 @@ class Lists:
         arrays: State,
         units: Units,
         order: Order,
-        shares: Shares,
+        ranges: WorkRanges,
         constants: Constants,
         walls: np.ndarray,
         bodies: Bodies,
         room: int,
     ):
-        self.units, self.particles, self.shares = units, order.particles, shares
+        self.units, self.particles, self.ranges = units, order.particles, ranges
         self.order, self.constants, self.bodies, self.pieces = order, constants, bodies, 1 + bodies.count
         own = arrays.under("water.lists")
         self.periods = own.holding("periods", np.array(order.grid.periods), "axis", own.place)
@@ -52,9 +52,9 @@ class Lists:
         self.images = tuple(3 * (up + 1) + along + 1 for along, up in product(*wraps))
         self.wall_first = own.holding("wall_first", padded(walls, order.keys), "key", ti.i32)
         particles = order.particles
-        wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
+        wet, dry = (-(-blocks // units.a_world) for blocks in (particles.fluid_blocks, max(particles.wall_blocks, 1)))
         crowd = room * self._crowd(order.grid.lanes, constants.smoothing)
-        few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
+        few = 4 * particles.wall_blocks * particles.lanes // units.a_world + wet  # blocks beside walls
         slots = particles.stride * particles.lanes  # of a world
         ends = particles.worlds * slots if len(self.images) == 1 else 9 << PLACES, slots  # an image stands in front
         self.near = Listing(arrays, units, "near", wet, crowd * wet, *ends)
@@ -96,7 +96,7 @@ class Lists:
     def moved(self, u):
         """Largest displacement (m) of a unit's particles since its lists were built."""
         p = self.particles
-        first, end = self.shares.wet(u)
+        first, end = self.ranges.fluid(u)
         farthest = ti.cast(0.0, p.real)
         for b in range(first, end):
             for lane in range(p.lanes):
@@ -118,12 +118,12 @@ class Lists:
         if ti.static(self.units.single):  # all worlds together are told one skin before they go on
             skin = SKIN[1] * spacing
         reach, fits, found, walls = self.constants.get("reach") + skin, True, 0, 0
-        first, end = self.shares.wet(u)
+        first, end = self.ranges.fluid(u)
         for b in range(first, end):
             self.near.first[u, b - first], self.beside.first[u, (b - first) * self.pieces] = found, walls
             for image in ti.static(self.images):
                 found = self.search(u, b, reach, found, self.near, image, False)
-                if ti.static(p.dry > 0):
+                if ti.static(p.wall_blocks > 0):
                     walls = self.search(u, b, reach, walls, self.beside, image, True)
             for part in range(self.bodies.count):
                 self.beside.first[u, (b - first) * self.pieces + 1 + part] = walls
@@ -135,8 +135,8 @@ class Lists:
         self.near.first[u, end - first], self.beside.first[u, (end - first) * self.pieces] = found, walls
         if found >= self.near.capacity or walls >= self.beside.capacity:  # the last place is written to in passing
             fits = False
-        if ti.static(p.dry > 0):
-            first, end = self.shares.dry(u)
+        if ti.static(p.wall_blocks > 0):
+            first, end = self.ranges.walls(u)
             found = 0
             for b in range(first, end):
                 self.facing.first[u, b - first] = found
@@ -165,7 +165,7 @@ class Lists:
         left, right = order.bin_of(lower[0] - far), order.bin_of(upper[0] + far)
         start = w * p.stride * p.lanes
         if ti.static(walls):
-            start += p.wet * p.lanes
+            start += p.fluid_blocks * p.lanes
         base = order.layer(b) * order.sizes[ROWS]
         for strip in range(base + order.strip_of(lower[1] - far), base + order.strip_of(upper[1] + far) + 1):
             begin = self.at(w, strip * order.sizes[BINS] + left, walls)
@@ -177,11 +177,11 @@ class Lists:
 
     @ti.func
     def search_part(self, u, b, reach, found, part, image: ti.template()):
-        """As `search`, for the dummies of a part beside a block of water, block by block."""
+        """As `search`, for the wall particles of a part beside a block of water, block by block."""
         p, bodies, listing = self.particles, self.bodies, self.beside
         lower, upper = self.box(b)
         code = self.seen_in(image, lower, upper)
-        start = self.units.world(u) * p.stride + p.wet + bodies.first[0]
+        start = self.units.world(u) * p.stride + p.fluid_blocks + bodies.first[0]
         for row in range(bodies.ends[part], bodies.end_in(part, b)):
             k, far = (start + row) * p.lanes, reach + bodies.radius[row]
             if self.outside(k, lower, upper) < far * far:
@@ -257,12 +257,12 @@ class Lists:
         ]
 
     @ti.func
-    def sees(self, b, entry, apart: ti.template(), part: ti.template()):
+    def visible(self, b, entry, apart: ti.template(), part: ti.template()):
         """The share of an entry's particle that a block b sees past the plates, at a part of the step."""
         p, jb, lane = self.particles, self.block_of(entry), self.lane_of(entry)
-        if ti.static(len(self.bodies.sight.plates) > 0):
+        if ti.static(len(self.bodies.visibility.plates) > 0):
             place = [ti.cast(p.place[a][jb, lane] + self.seen(entry, a), p.real) for a in ti.static(range(p.axes))]
-            return self.bodies.sight.share(b, jb, place, apart, part)
+            return self.bodies.visibility.share(b, jb, place, apart, part)
         else:
             return ti.cast(1.0, p.real)
 
@@ -289,12 +289,12 @@ class Lists:
 
 
 @dataclass(frozen=True)
-class Medium:
+class FluidContext:
     """What all passes over the water work on."""
 
     units: Units
     particles: Particles
-    shares: Shares
+    ranges: WorkRanges
     lists: Lists
     constants: Constants
     poses: Poses

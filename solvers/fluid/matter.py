@@ -5,28 +5,28 @@ from typing import ClassVar
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.census import Census, Pool
 from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scene, refuse_state, residual, suspects
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
+from solvers.fluid.diagnostics import Diagnostics, Pool
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import Fluid
 from solvers.fluid.grid import grid_round
-from solvers.fluid.lists import Lists, Medium
+from solvers.fluid.lists import FluidContext, Lists
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order, Tanks
-from solvers.fluid.phases.stiffening import Stiffening
-from solvers.fluid.phases.vent import Vent
+from solvers.fluid.phases.sound_switch import SoundSwitch
+from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.shifting import SHIFTING
-from solvers.fluid.state import LANES, Particles, Shares
-from solvers.fluid.walls.answer import answer_at_rest
-from solvers.fluid.walls.behind import Behind
+from solvers.fluid.state import LANES, Particles, WorkRanges
+from solvers.fluid.walls.added_mass import wall_added_mass
 from solvers.fluid.walls.bodies import Bodies
-from solvers.fluid.walls.closing import Closing
+from solvers.fluid.walls.divergence_correction import DivergenceCorrection
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
-from solvers.fluid.walls.lean import Lean
+from solvers.fluid.walls.tangential_correction import TangentialCorrection
+from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_slab
@@ -39,7 +39,7 @@ from solvers.tank.setting import Setting
 
 @ti.data_oriented
 class WaterMatter(Matter):
-    """Water: its dummies' pressures, its forces, then kick and drift, the rates of density, and drift."""
+    """Water: the pressures of its walls, its forces, then kick and drift, the rates of density, and drift."""
 
     name = "water"
     of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force", "part_force")  # known only after a step
@@ -50,9 +50,9 @@ class WaterMatter(Matter):
         arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], fluid.count
         lanes = LANES if setting.wide and not setting.per_particle else 1
         self.wide = lanes > 1
-        behind = Behind(water, scene.tanks, scene.fills)
+        layers = WallLayers(water, scene.tanks, scene.fills)
         grid = grid_round(water, fluid.particles["position"], scene.tanks, setting.walls.bounds, lanes)
-        dummy, blocks, first = grid.arranged(behind.points, behind.tanks)
+        slots, blocks, first = grid.arranged(layers.points, layers.tanks)
         self.bodies = Bodies(arrays, setting.parts, water, scene, lanes)
         self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
@@ -60,48 +60,48 @@ class WaterMatter(Matter):
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
         sizes = setting.axes, worlds, count, lanes, walls, grid.strips
-        self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among, water.apart > 0.0)
-        self.units = units = setting.units(p.wet)
+        self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among, water.gap > 0.0)
+        self.units = units = setting.units(p.fluid_blocks)
         self.load = setting.load(arrays.under("water"), units, fluid.pace)
-        self.load.lag(answer_at_rest(scene, behind), water.added_mass == "layer")
-        self.dummies = dummy, blocks, behind.volumes, behind.firm
-        shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
+        self.load.lag(wall_added_mass(scene, layers), water.added_mass == "layer")
+        self.wall_points = slots, blocks, layers.volumes, layers.firm
+        ranges, self.constants = WorkRanges(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds, fluid.pace > 1)
         of_parts = np.array(self.bodies.tanks, dtype=int)[self.bodies.solids.owner]
-        self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks, of_parts))
-        self.bodies.join(arrays, p, self.order, shares, self.poses, units)
-        self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
+        self.order = Order(arrays, p, grid, Tanks.of(scene, p, slots, layers.tanks, of_parts))
+        self.bodies.join(arrays, p, self.order, ranges, self.poses, units)
+        self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, setting.room)
         self.long = pace = Pace(arrays.under("water"), self.lists, fluid.pace)
-        medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
-        lean = Lean(arrays, medium, behind, dummy, scene.tanks)
-        self.extrapolation = Extrapolation(arrays, medium, lean)
-        self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
-        self.stiffening = Stiffening(arrays, p, self.constants, scene, setting.stretch)
-        self.paced = self.stiffening.paced
-        self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
-        self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness, pace)
-        probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
-        self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, behind.open)
+        context = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
+        tangential = TangentialCorrection(arrays, context, layers, slots, scene.tanks)
+        self.extrapolation = Extrapolation(arrays, context, tangential)
+        self.forces = Forces(arrays, context, self.extrapolation, self.load, tank.thickness)
+        self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, setting.stretch)
+        self.paced = self.sound_switch.paced
+        self.continuity, self.vent = Continuity(arrays, context, self.forces), OutflowVent(arrays, context, water.air)
+        self.mover = Mover(arrays, context, self.extrapolation, self.vent, self.forces.voids, pace)
+        probes = [slots[slot] + p.fluid_blocks * lanes for slot in layers.probes]
+        self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, layers.open)
         pool = Pool.of(scene, setting.walls, self.order)
-        self.edges = Edges(arrays, medium, self.extrapolation, behind, dummy, scene.tanks, pool.first, water)
-        self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
+        self.edges = Edges(arrays, context, self.extrapolation, layers, slots, scene.tanks, pool.first, water)
+        self.diagnostics = Diagnostics(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * fluid.particles["volume"].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = pace.first(self._before()), pace.last([Phase(self.note_passage)])
-        closing = [Closing(arrays, medium, behind, dummy).close] if self.continuity.closes else []
-        acts = self.mover.kick, *closing, self.continuity.expand, self.finish
+        correction = [DivergenceCorrection(arrays, context, layers, slots).correct] if self.continuity.corrects else []
+        acts = self.mover.kick, *correction, self.continuity.continuity_pass, self.finish
         self.after = pace.last(Phase(act, units) for act in acts)
 
     def _before(self) -> tuple[Phase, ...]:
         return (
             Phase(self.note_poses),
-            Phase(self.forces.publish, self.units),
+            Phase(self.forces.update_state, self.units),
             *([Phase(self.vent.sum, self.units), Phase(self.vent.flow)] if self.vent.acts else ()),
-            *([Phase(self.extrapolation.press, self.units)] if self.particles.dry else ()),
+            *([Phase(self.extrapolation.extrapolate, self.units)] if self.particles.wall_blocks else ()),
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
-            Phase(self.forces.push, self.units),
+            Phase(self.forces.momentum_pass, self.units),
         )
 
     @property
@@ -134,7 +134,7 @@ class WaterMatter(Matter):
     def finish(self, u, frame, kick, dt):
         """End a unit's step; returns whether its particles are sound."""
         if u % self.units.a_world == 0:
-            self.census.behind[self.units.world(u)] = 0.5 * ti.cast(dt, self.particles.exact)
+            self.diagnostics.behind[self.units.world(u)] = 0.5 * ti.cast(dt, self.particles.exact)
         return self.mover.finish(u, frame, kick, dt)
 
     @ti.func
@@ -178,18 +178,18 @@ class WaterMatter(Matter):
     @ti.func
     def pace(self, w):
         """Largest stride of a world, in base steps: more than 1 while its air is soft."""
-        return self.stiffening.pace()
+        return self.sound_switch.pace()
 
     @property
     def changes(self) -> int:
         """The base step before which the air is to become stiff."""
-        return self.stiffening.next
+        return self.sound_switch.next
 
     def change(self) -> None:
         """Go on with stiff air; the energy that it loses counts as diffused."""
-        lost = self.continuity.lost.to_numpy().reshape(self.particles.worlds, -1)
-        lost[:, 0] += self.stiffening.change(self.scene.gravity)
-        self.continuity.lost.from_numpy(lost.reshape(-1))
+        lost = self.continuity.diffused.to_numpy().reshape(self.particles.worlds, -1)
+        lost[:, 0] += self.sound_switch.change(self.scene.gravity)
+        self.continuity.diffused.from_numpy(lost.reshape(-1))
 
     def as_rigid(self) -> list[Body]:
         """The water of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
@@ -198,12 +198,12 @@ class WaterMatter(Matter):
         return [frozen(*one) for one in zip(y, z, per_slab(self.scene) * mass, volume, strict=True)]
 
     def place(self, position: np.ndarray | None) -> None:
-        """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
+        """Place the particles as the scene says, and the wall particles; all that was noted is forgotten."""
         p = self.particles
-        self.stiffening.take(False, self.scene.gravity)
+        self.sound_switch.use(False, self.scene.gravity)
         p.put(self.fluid.particles, self.water)
-        p.put_walls(*self.dummies, self.bodies.solids)
-        for field in (*self.forces.sums, self.continuity.lost, self.census.behind, self.lists.last):
+        p.put_walls(*self.wall_points, self.bodies.solids)
+        for field in (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind, self.lists.last):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
         self.lists.expire()
@@ -213,32 +213,32 @@ class WaterMatter(Matter):
 
     def observe(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of every world at its time (s): (W, *shape) of each by name."""
-        sums, thick = self.census.take(time, self.thickness), self.thickness
+        sums, thick = self.diagnostics.sums_at(time, self.thickness), self.thickness
         mass = np.maximum(sums["mass"], 1e-300)  # of both phases
         centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
-        now = [field.to_numpy() for field in self.census.now]
+        now = [field.to_numpy() for field in self.diagnostics.now]
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        potential += self.scene.gravity * self.census.buoyed(sums, down)
-        late = self.census.behind.to_numpy()
-        (viscous, held, work), by_parts = self.forces.counted(late), self.bodies.given(late)
+        potential += self.scene.gravity * self.diagnostics.buoyed(sums, down)
+        late = self.diagnostics.behind.to_numpy()
+        (viscous, stored, work), by_parts = self.forces.counted(late), self.bodies.work_until(late)
         rows = {
-            **self.census.of_water(sums, mass, centre),
+            **self.diagnostics.of_water(sums, mass, centre),
             "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
             "water_kinetic": sums["flowing"],
             "water_potential": potential,
             "water_elastic": sums["elastic"],
             "water_total": sums["moving"] + potential + sums["elastic"],
             "water_viscous": viscous * thick,
-            "water_diffusive": thick * self.continuity.lost.to_numpy().reshape(len(mass), -1).sum(axis=1),
+            "water_diffusive": thick * self.continuity.diffused.to_numpy().reshape(len(mass), -1).sum(axis=1),
             "water_work": (work + by_parts.sum(axis=1)) * thick,
-            "water_wall_energy": held * thick,
-            "water_density_deviation": sums["excess"],
-            "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
+            "water_wall_energy": stored * thick,
+            "water_density_deviation": sums["deviation"],
+            "level_depth": self.diagnostics.level_depth.to_numpy()[:, : self.diagnostics.levels],
             "water_escaped": sums["escaped"],
-            **self.gauges.take(),
-            **self.edges.take(),
-            **self.bodies.take(thick, by_parts),
+            **self.gauges.read_and_reset(),
+            **self.edges.read_and_reset(),
+            **self.bodies.read_and_reset(thick, by_parts),
         }
         np.copyto(self.start, residual(rows, 0.0), where=np.isnan(self.start))
         return rows
@@ -258,11 +258,11 @@ class WaterMatter(Matter):
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Places, velocities relative to the tank (W, n, 2) and pressures (W, n) at `time` (s), which must be now."""
         p = self.particles
-        found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
+        found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation)
         told = {
             "position": np.stack(found[0:2], axis=-1),
-            "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6], self.gas),
-            "pressure": self.census.whole(self.constants.pressures(found[6], self.gas), found[0:2]),
+            "velocity": self.diagnostics.relative(time, found[0:2], found[2:4], found[4:6], self.gas),
+            "pressure": self.diagnostics.whole(self.constants.pressures(found[6], self.gas), found[0:2]),
         }
         rows = {f"{phase}_{name}": told[name][:, part] for phase, part in self.phases.items() for name in told}
         return rows
@@ -270,7 +270,7 @@ class WaterMatter(Matter):
     def alter(self, scene) -> None:
         """Go on with another gravity; the account of energy begins anew."""
         self.scene = scene
-        self.constants.become(self.stiffening.now, scene.gravity)
+        self.constants.become(self.sound_switch.now, scene.gravity)
         self.start[:] = np.nan
 
     def fields(self) -> list[ti.Field]:
@@ -279,16 +279,16 @@ class WaterMatter(Matter):
 
     def state(self) -> dict[str, np.ndarray]:
         """What `restore` continues from, beside the arrays."""
-        return {"water_start": self.start.copy()} | self.stiffening.state()
+        return {"water_start": self.start.copy()} | self.sound_switch.state()
 
     def axes(self) -> dict[str, Axes]:
         """The axes of the arrays of `state`, by name."""
-        return {"water_start": (self.particles.each_world,)} | self.stiffening.axes()
+        return {"water_start": (self.particles.each_world,)} | self.sound_switch.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned."""
         self.start = np.array(state["water_start"])
-        self.stiffening.restore(state, self.scene.gravity)
+        self.sound_switch.restore(state, self.scene.gravity)
 
 
 def make_water(scene, setting: Setting) -> WaterMatter | None:

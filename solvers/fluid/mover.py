@@ -3,10 +3,10 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.lists import Medium
-from solvers.fluid.phases.vent import Vent
+from solvers.fluid.lists import FluidContext
+from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, THINNEST
-from solvers.fluid.surface.fullness import Fullness
+from solvers.fluid.surface.void_indicator import VoidIndicator
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
@@ -25,18 +25,26 @@ class Mover:
     open tanks, `within` (units,) m/s is the largest speed of what has not left them (`Grid.watched`).
     """
 
-    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, vent: Vent, fullness: Fullness, pace: Pace):
-        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
-        self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.walls, self.bodies, self.vent, self.fullness = walls, medium.lists.bodies, vent, fullness
+    def __init__(
+        self,
+        arrays: State,
+        context: FluidContext,
+        walls: Extrapolation,
+        vent: OutflowVent,
+        voids: VoidIndicator,
+        pace: Pace,
+    ):
+        self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
+        self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
+        self.walls, self.bodies, self.vent, self.voids = walls, context.lists.bodies, vent, voids
         self.pace = pace
         own = arrays.under("water.mover")
-        (self.fastest,) = own.reals((medium.units.axis,), "fastest")
-        (self.deviation,) = own.reals((medium.units.axis,), "deviation", kept=False)
-        box = medium.lists.order.grid.watched
+        (self.fastest,) = own.reals((context.units.axis,), "fastest")
+        (self.deviation,) = own.reals((context.units.axis,), "deviation", kept=False)
+        box = context.lists.order.grid.watched
         self.spills = box is not None
         if self.spills:
-            (self.within,) = own.reals((medium.units.axis,), "within", kept=False)
+            (self.within,) = own.reals((context.units.axis,), "within", kept=False)
             self.box = own.holding("box", np.concatenate(box), "number", own.place)
 
     @ti.func
@@ -46,7 +54,7 @@ class Mover:
         w = self.units.world(u)
         pull = [ti.cast(self.poses.felt[a][w], p.real) for a in ti.static(range(p.axes))]
         during = self.pace.kick(w, kick)
-        first, end = self.shares.wet(u)
+        first, end = self.ranges.fluid(u)
         farthest = p.zeros()
         for b in range(first, end):
             filled = p.filled(b)
@@ -61,9 +69,9 @@ class Mover:
                 p.store(p.velocity[a], b, p.load(p.velocity[a], b) + during * push)
             farthest = ti.max(farthest, self.drift(w, b, filled, 0.5 * dt, AT_START))
             if ti.static(self.poses.rotating and c.diffusion.renormalised):
-                slope = [p.load(p.slope[a], b) for a in ti.static(range(p.axes))]
-                self.turn(w, b, slope, p.slope, AT_START)
-        if ti.static(self.poses.moving and p.dry > 0):
+                gradient = [p.load(p.gradient[a], b) for a in ti.static(range(p.axes))]
+                self.turn(w, b, gradient, p.gradient, AT_START)
+        if ti.static(self.poses.moving and p.wall_blocks > 0):
             self.walls.carry(u)
         if ti.static(self.bodies.moving):
             self.bodies.place(u, AT_MIDDLE)
@@ -75,23 +83,23 @@ class Mover:
         """Step a unit's densities, and move its particles to the end of the step; returns whether they are sound."""
         p, c = self.particles, self.constants
         w = self.units.world(u)
-        first, end = self.shares.wet(u)
+        first, end = self.ranges.fluid(u)
         farthest, deviation, tame, paced, watched = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
         for b in range(first, end):
             filled = p.filled(b)
             gas = p.gases(b)
             step = dt * filled
-            s = self.fullness.stepped(b, p.load(p.excess, b), p.load(p.rate, b), p.load(p.rate_of_walls, b), step)
+            s = self.voids.stepped(b, p.load(p.deviation, b), p.load(p.rate, b), p.load(p.rate_of_walls, b), step)
             if ti.static(self.vent.acts):
                 s = self.vent.pass_through(w, b, gas, s)
             if ti.static(c.two):
                 s = ti.max(s, (1.0 - gas) * (-1.0) + gas * THINNEST)
-            p.store(p.excess, b, s)
+            p.store(p.deviation, b, s)
             if ti.static(c.shifting.carries):
                 share = step / (p.load(p.mass, b) + (1.0 - filled))
                 for a in ti.static(range(p.axes)):
                     p.store(p.velocity[a], b, p.load(p.velocity[a], b) + share * p.load(p.carried[a], b))
-            loose = ti.select(p.load(p.span, b) < INSIDE, p.ones() * (DENSEST / DENSEST_SPRAY), p.ones())
+            loose = ti.select(p.load(p.eigenvalue, b) < INSIDE, p.ones() * (DENSEST / DENSEST_SPRAY), p.ones())
             if ti.static(c.two):
                 loose = (1.0 - gas) * loose + gas * (DENSEST / DENSEST_AIR)
             deviation = ti.max(deviation, (loose * s) * (loose * s))

@@ -10,7 +10,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.grid import Grid
-from solvers.fluid.state import COUNT, FAR, UNUSED, WET, Particles
+from solvers.fluid.state import COUNT, FAR, FLUID, UNUSED, Particles
 from solvers.machine.state import Axis, State, roomy
 
 CHUNK = 256  # keys that one thread sums up
@@ -21,7 +21,7 @@ STRIPS, BINS, LONGEST, KEYS, ROWS = range(5)  # what of the grid is kept in `siz
 class Tanks:
     """The tanks of a world: how many particles are in each (`fills`), and its length over that of the first with water.
 
-    `standing` is the tank (dry blocks,) of each block of dummies.
+    `standing` is the tank (wall blocks,) of each block of wall particles.
     """
 
     fills: Sequence[int]
@@ -30,13 +30,13 @@ class Tanks:
 
     @classmethod
     def of(cls, scene, particles: Particles, slots: np.ndarray, tanks: np.ndarray, parts: np.ndarray) -> "Tanks":
-        """Those of a scene, whose dummies are in these slots of the dry blocks, of these `tanks`.
+        """Those of a scene, whose wall particles are in these slots of the wall blocks, of these `tanks`.
 
         Blocks of parts come last: `parts` are the tanks in which these stand.
         """
         first = next(number for number, fill in enumerate(scene.fills) if fill)
         lengths = np.array([tank.along for tank in scene.tanks])
-        standing = np.zeros(max(1, particles.dry), dtype=int)
+        standing = np.zeros(max(1, particles.wall_blocks), dtype=int)
         standing[slots // particles.lanes] = tanks
         standing[particles.walls - len(parts) : particles.walls] = parts
         return cls(scene.fills, lengths / lengths[first], standing)
@@ -54,7 +54,7 @@ class Order:
         self.layers = grid.layers
         sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins, grid.rows
         # A particle of a full tank takes two keys, and there is room for twice as many.
-        self.keys = roomy(sizes[KEYS] + 1, 2 * particles.wet * particles.lanes)
+        self.keys = roomy(sizes[KEYS] + 1, 2 * particles.fluid_blocks * particles.lanes)
         self.chunks = -(-self.keys // CHUNK)
         own = arrays.under("water.order")
         self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
@@ -65,7 +65,7 @@ class Order:
             self.weights = own.holding("weights", tanks.weights, "layer", own.exact)
         world = Axis("world", particles.worlds)
         keys = world, Axis("key", self.chunks * CHUNK)
-        (self.first,) = own.integers(keys, "first", below=particles.wet * particles.lanes + 1)
+        (self.first,) = own.integers(keys, "first", below=particles.fluid_blocks * particles.lanes + 1)
         (self.cursor,) = own.integers(keys, "cursor", kept=False)
         (self.chunk_first,) = own.integers((world, Axis("chunk", self.chunks)), "chunk_first", kept=False)
         each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
@@ -103,14 +103,14 @@ class Order:
 
     @ti.func
     def layer(self, b):
-        """The tank that a block is in: one of water that is in use, or one of dummies."""
+        """The tank that a block is in: one of water that is in use, or one of wall particles."""
         found = 0
         if ti.static(self.layers > 1):
             row = b % self.particles.stride
-            if row < self.particles.wet:
+            if row < self.particles.fluid_blocks:
                 found = self.layer_of(self.particles.number[b, 0])
             else:
-                found = self.standing[row - self.particles.wet]
+                found = self.standing[row - self.particles.fluid_blocks]
         return found
 
     @ti.func
@@ -174,7 +174,7 @@ class Order:
         """
         lanes = self.particles.lanes
         strips, bins, longest = self.sizes[STRIPS], self.sizes[BINS], self.sizes[LONGEST]
-        spare = self.particles.sizes[WET] - (self.particles.sizes[COUNT] + lanes - 1) // lanes - strips
+        spare = self.particles.sizes[FLUID] - (self.particles.sizes[COUNT] + lanes - 1) // lanes - strips
         slot, begin, k = 0, 0, 0
         for _ in range(strips):
             slot = (slot + lanes - 1) // lanes * lanes

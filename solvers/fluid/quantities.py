@@ -1,4 +1,4 @@
-"""What is known of the water: its sums and gauges (`census`), and each of its particles (`state`)."""
+"""What is known of the water: its sums and gauges (`diagnostics`), and each of its particles (`state`)."""
 
 from solvers.machine.quantity import Quantity, directions, freedoms
 

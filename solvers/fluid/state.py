@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Air, Water
-from solvers.fluid.walls.between import MODES
+from solvers.fluid.walls.end_walls import MODES
 from solvers.machine.state import Axis, State, roomy
 from solvers.machine.units import Units
 from solvers.space.axes import named
@@ -13,35 +13,35 @@ LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32
 SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
 ROOM = 16384  # lanes for which there is room at least: tanks up to there, all together, share compiled kernels
 BESIDE = 64.0  # lanes of walls for the root of those of water: four rows round a tank that is longer than it is high
-COUNT, WET, DRY = range(3)  # of the numbers that differ between tanks: particles, blocks that they may use, walls'
+COUNT, FLUID, WALLS = range(3)  # of the numbers that differ between tanks: particles, blocks that they may use, walls'
 FAR = 1e6  # m, where unused lanes are
 DENSEST = 0.2  # deviation of the density within the water at which a run is stopped
 DENSEST_SPRAY = 0.5  # that of drops, and of the surface: a drop that hits a wall at Mach 0.2 is compressed by a fifth
 DENSEST_AIR = 30.0  # that of air, which a slow speed of sound makes soft: trapped under an impact it all but vanishes
-THINNEST = -0.8  # excess of density of air down to which it is drawn out; a particle cannot stand for a larger void
-INSIDE = 0.75  # least eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
-SPRAY = 0.2  # least eigenvalue below which water is spray, which bears no suction (Marrone et al. 2010)
+THINNEST = -0.8  # density deviation of air down to which it is drawn out; a particle cannot stand for a larger void
+INSIDE = 0.75  # smallest eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
+SPRAY = 0.2  # smallest eigenvalue below which water is spray, which bears no suction (Marrone et al. 2010)
 UNUSED = -1  # number of an unused lane
 
 
-def allowed(span: np.ndarray) -> np.ndarray:
-    """The deviation of density at which a run is stopped, (n,), by the particles' least eigenvalues `span` (n,)."""
-    return np.where(span < INSIDE, DENSEST_SPRAY, DENSEST)
+def allowed(eigenvalue: np.ndarray) -> np.ndarray:
+    """The density deviation (n,) at which a run is stopped, by the particles' smallest `eigenvalue` (n,)."""
+    return np.where(eigenvalue < INSIDE, DENSEST_SPRAY, DENSEST)
 
 
 @ti.data_oriented
 class Particles:
-    """Particles in `stride` blocks a world: those of water first, `wet` blocks of which `used` are in use, then walls'.
+    """Particles in `stride` blocks a world: `fluid_blocks` of which `used` are in use, then `wall_blocks`.
 
-    There are `wet` and `dry` of either, lengths that many tanks have in common; `sizes` are the numbers of the scene.
-    Fields (W · stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `excess` s = ρ/ρ0 −
-    1; `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to
-    block. `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and `rate_of_walls` (1/s) are
-    those of s, and the `rate` of dummies how fast water closes on them (`Closing`); `acceleration` (m/s²) is that of
-    the last kick; `slope` (1/m) the renormalised gradient of s; `span` the least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1
-    within water; `carried` (N/m) the momentum that shifts bring (`shifting`). Of two phases, `gas` is 1 for particles
-    of air, 0 for those of water, `span` is of the own phase, and dummies have the pressure that water sees in
-    `pressure`, that which air sees in `pressure_of_air`, and the water's `share` of what they see.
+    Of either there are lengths that many tanks have in common; `sizes` are the numbers of the scene. Fields (W ·
+    stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `deviation` s = ρ/ρ0 − 1; `mass`
+    (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to block.
+    `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and `rate_of_walls` (1/s) are those
+    of s, and the `rate` of wall particles how fast water closes on them (`DivergenceCorrection`); `acceleration` (m/s²)
+    is that of the last kick; `gradient` (1/m) the renormalised gradient of s; `eigenvalue` the smallest one of Σ V_j
+    r_ji ⊗ ∇W, 1 within water; `carried` (N/m) the momentum that shifts bring (`shifting`). Of two phases, `gas` is 1
+    for particles of air, 0 for those of water, `eigenvalue` is of the own phase, and wall particles have the pressure
+    that water sees in `pressure`, that which air sees in `pressure_of_air`, and the water's `share` of what they see.
 
     With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle. The usual room
     is shared `among` so many worlds, 0: those that there are.
@@ -59,35 +59,37 @@ class Particles:
         shifting,
         air: Air | None = None,
         among: int = 0,
-        narrow: bool = False,
+        end_walls: bool = False,
     ):
         self.axes, self.worlds, self.count, self.lanes = axes, worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
         sizes = count, count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips, -(-walls // lanes)
-        self.wet = roomy(sizes[WET], roomy(1, ROOM // lanes // (among or worlds)))
-        self.walls = sizes[DRY]
-        self.dry = roomy(self.walls, roomy(1, int(BESIDE * (self.wet * lanes) ** 0.5) // lanes)) if walls else 0
-        self.stride = self.wet + self.dry
+        self.fluid_blocks = roomy(sizes[FLUID], roomy(1, ROOM // lanes // (among or worlds)))
+        self.walls = sizes[WALLS]
+        self.wall_blocks = (
+            roomy(self.walls, roomy(1, int(BESIDE * (self.fluid_blocks * lanes) ** 0.5) // lanes)) if walls else 0
+        )
+        self.stride = self.fluid_blocks + self.wall_blocks
         blocks, own = Axis("block", worlds * self.stride), arrays.under("water")
         self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
         each = blocks, Axis("lane", lanes)
         self.place = own.wide(each, *named("place", self.axes), kind=own.place)
         self.velocity = own.wide(each, *named("velocity", self.axes))
-        self.excess, self.mass = own.wide(each, "excess", "mass")
+        self.deviation, self.mass = own.wide(each, "deviation", "mass")
         (self.number,) = own.wide(each, "number", kind=ti.i32)
-        self.volume, self.pressure, self.span = own.wide(each, "volume", "pressure", "span")
+        self.volume, self.pressure, self.eigenvalue = own.wide(each, "volume", "pressure", "eigenvalue")
         (self.firm,) = own.wide(each, "firm")
         self.rate, self.rate_of_walls = own.wide(each, "rate", "rate_of_walls", kept=False)
         self.acceleration = own.wide(each, *named("acceleration", self.axes))
         if shifting.acts:
-            (self.span_before,) = own.wide(each, "span_before", kept=False)
+            (self.eigenvalue_before,) = own.wide(each, "eigenvalue_before", kept=False)
             self.shift = own.wide(each, *named("shift", self.axes), kept=False)
         if shifting.carries:
             self.carried = own.wide(each, *named("carried", self.axes), kept=False)
-        self.slope = own.wide(each, *named("slope", self.axes))
+        self.gradient = own.wide(each, *named("gradient", self.axes))
         self.two = air is not None
         self.noted: list[ti.Field] = (
-            [self.span] if shifting.acts else []
+            [self.eigenvalue] if shifting.acts else []
         )  # of the step before, as the next one needs it
         if air and air.tension > 0.0:
             stresses = "stress_yy", "stress_yz", "stress_zz"
@@ -97,13 +99,13 @@ class Particles:
         if self.two:
             (self.gas,) = own.wide(each, "gas")
             self.pressure_of_air, self.share = own.wide(each, "pressure_of_air", "share", kept=False)
-        self.layers = []  # by mode and axis, m/s: how water passes walls before and behind (`Between`)
-        if narrow:
-            self.layers = [own.wide(each, *named(f"layer_{n}", self.axes)) for n in range(MODES)]
-            self.noted += [field for mode in self.layers for field in mode]
+        self.end_wall_modes = []  # by mode and axis, m/s: how water passes the end walls (`EndWallFriction`)
+        if end_walls:
+            self.end_wall_modes = [own.wide(each, *named(f"end_wall_{n}", self.axes)) for n in range(MODES)]
+            self.noted += [field for mode in self.end_wall_modes for field in mode]
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)
-        (self.used,) = own.integers((self.each_world,), "used", below=self.wet + 1)
+        (self.used,) = own.integers((self.each_world,), "used", below=self.fluid_blocks + 1)
 
     @property
     def moved(self) -> list[ti.Field]:
@@ -113,7 +115,7 @@ class Particles:
     @property
     def given(self) -> list[ti.Field]:
         """Those of them that a scene tells."""
-        always = [*self.place, *self.velocity, self.excess, self.mass, self.number]
+        always = [*self.place, *self.velocity, self.deviation, self.mass, self.number]
         return [*always, self.gas] if self.two else always
 
     def fields(self) -> list[ti.Field]:
@@ -125,22 +127,22 @@ class Particles:
         density = water.density
         if self.two:
             density = np.where(start["gas"], water.air.density, water.density)
-        mass = density * (1.0 + start["excess"]) * start["volume"]
+        mass = density * (1.0 + start["deviation"]) * start["volume"]
         along = [start[name][..., axis] for name in ("position", "velocity") for axis in range(start[name].shape[-1])]
-        columns = [*along, start["excess"], mass, np.broadcast_to(np.arange(self.count), mass.shape)]
+        columns = [*along, start["deviation"], mass, np.broadcast_to(np.arange(self.count), mass.shape)]
         columns += [*([start["gas"]] if self.two else []), start["volume"]]
         fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, *([0.0] if self.two else []), 0.0]
         for field, values, fill in zip([*self.given, self.volume], columns, fills, strict=True):
             whole = self.by_world(field.to_numpy())
-            whole[:, : self.wet * self.lanes] = fill
+            whole[:, : self.fluid_blocks * self.lanes] = fill
             whole[:, : self.count] = values
             field.from_numpy(whole.reshape(-1, self.lanes))
-        for field in (*self.acceleration, *(field for mode in self.layers for field in mode)):
+        for field in (*self.acceleration, *(field for mode in self.end_wall_modes for field in mode)):
             field.fill(0.0)
         self.used.fill(-(-self.count // self.lanes))
 
     def put_walls(self, slots: np.ndarray, blocks: np.ndarray, volume: np.ndarray, firm: np.ndarray, solids) -> None:
-        """Place dummies of tanks in these `slots` of their `blocks`, and after them those of the `solids` in them."""
+        """Place the walls of tanks in these `slots` of their `blocks`, and after them those of the `solids` in them."""
         held = [np.zeros(len(blocks) * self.lanes, kind) for kind in (float, float, int)]
         held[2][:] = UNUSED
         held[0][slots], held[1][slots], held[2][slots] = volume, firm, np.arange(len(slots))
@@ -149,7 +151,7 @@ class Particles:
         fields = *self.place, self.volume, self.firm, self.number
         for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *rest], strict=True):
             whole = field.to_numpy().reshape(self.worlds, self.stride, self.lanes)
-            whole[:, self.wet : self.wet + self.walls] = values
+            whole[:, self.fluid_blocks : self.fluid_blocks + self.walls] = values
             field.from_numpy(whole.reshape(-1, self.lanes))
 
     def by_world(self, values: np.ndarray) -> np.ndarray:
@@ -158,9 +160,9 @@ class Particles:
 
     def read(self, *fields: ti.Field) -> list[np.ndarray]:
         """Values (W, n) of these fields in the order of the particles' numbers."""
-        number = self.by_world(self.number.to_numpy())[:, : self.wet * self.lanes]
+        number = self.by_world(self.number.to_numpy())[:, : self.fluid_blocks * self.lanes]
         order = np.argsort(np.where(number < 0, self.count, number), axis=1, kind="stable")[:, : self.count]
-        wet = slice(0, self.wet * self.lanes)
+        wet = slice(0, self.fluid_blocks * self.lanes)
         return [np.take_along_axis(self.by_world(field.to_numpy())[:, wet], order, axis=1) for field in fields]
 
     # Lanes are gone through in loops, which LLVM unrolls: 16 accesses for each load, written out, would make Taichi's
@@ -238,7 +240,7 @@ class Particles:
 
 
 @ti.data_oriented
-class Shares:
+class WorkRanges:
     """Which blocks of a world each unit works on: of the used ones of water, and of the walls' ones, equal shares."""
 
     def __init__(self, particles: Particles, units):
@@ -255,18 +257,18 @@ class Shares:
         return first, end
 
     @ti.func
-    def wet(self, u):
+    def fluid(self, u):
         """First and end of a unit's blocks of water."""
         w = self.units.world(u)
         first, end = self._cut(u, self.particles.used[w])
         return w * self.particles.stride + first, w * self.particles.stride + end
 
     @ti.func
-    def dry(self, u):
+    def walls(self, u):
         """First and end of a unit's blocks of walls."""
         w = self.units.world(u)
-        first, end = self._cut(u, self.particles.sizes[DRY])
-        start = w * self.particles.stride + self.particles.wet
+        first, end = self._cut(u, self.particles.sizes[WALLS])
+        start = w * self.particles.stride + self.particles.fluid_blocks
         return start + first, start + end
 
 

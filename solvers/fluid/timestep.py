@@ -5,14 +5,14 @@ from math import inf, pi, sqrt
 
 from solvers.fluid.given import Water
 from solvers.fluid.viscosity import LAMINAR
-from solvers.fluid.walls.between import Between
+from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.machine.limit import Limit
 
 COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
 OF_AIR = 0.5  # likewise of air, which is faster than its sound where water squeezes it out
 FORCED = 0.25  # of √(h/a) (Monaghan 1992, eq. 10.2)
 SPREAD = 0.125  # of h²/ν (Morris, Fox & Zhu 1997, eq. 21)
-RUBBED = 0.25  # of b²/(12 ν): the friction of the walls before and behind is explicit
+END_WALLS = 0.25  # of b²/(12 ν): end-wall friction is explicit
 EVENED = 2.0 / 7.0  # of h/(δ c0): the diffusion of density is explicit, with 2 Σ V η = 7/h² over all neighbours
 SURFACE = 0.25  # of √((ρ_w + ρ_a) h³/(2 π σ)) (Brackbill, Kothe & Zemach 1992, eq. 61; Hu & Adams 2006, eq. 26)
 TRAVELLED = 0.02  # of the shortest period of the tank's motion
@@ -45,8 +45,12 @@ def limits_of_water(scene, closing: float = 0.0) -> list[Limit]:
     viscosity = max(kinematic(water), kinematic(of_air(water)) if water.air else 0.0)
     if viscosity > 0.0:
         bounds.append(Limit(SPREAD * length**2 / viscosity, f"{SPREAD:g} h²/ν at {viscosity:.3g} m²/s", firm=True))
-    if water.apart > 0.0:
-        bounds.append(Limit(RUBBED / Between.rate(water), f"{RUBBED:g} of the time in which walls stop it", firm=True))
+    if water.gap > 0.0:
+        bounds.append(
+            Limit(
+                END_WALLS / EndWallFriction.rate(water), f"{END_WALLS:g} of the time in which walls stop it", firm=True
+            )
+        )
     if water.delta > 0.0 and water.diffusion != "none":
         longest = EVENED * length / (water.delta * sound)
         bounds.append(Limit(longest, "the diffusion of density", firm=True))

@@ -66,8 +66,8 @@ class Mover:
     def felt(self, g: ti.template(), w, i, body: ti.template()):
         """What grain i feels of the tank's motion: accelerations (m/s²) along the axes, and of its spin (1/s²), lists.
 
-        In the frame of `body` = (b, φ̇, φ̈) it feels b − φ̈ × r + φ̇² r − 2 φ̇ × u, and its spin changes by −φ̈. b has an
-        entry an axis; the tank turns in the plane alone, about x.
+        In the frame of `body` = (b, φ̇, φ̈) it feels b − φ̈ × r + φ̇² r − 2 φ̇ × u, and its spin changes by −φ̈. b has
+        an entry an axis; the tank turns in the plane alone, about x.
         """
         b = [body[a] for a in ti.static(range(g.axes))]
         spin_up = [ti.cast(0.0, g.real) for _ in ti.static(range(g.turns))]

@@ -47,9 +47,10 @@ class Poses:
         """Note what the forces at the beginning of a step of dt (s) need, at time t (s).
 
         The walls' acceleration is as the carrier knows it. One that answers to the load knows that of its last step.
-        Only the layer of water before the walls, a smoothing length thick, feels it through the dummies' pressures. If
-        this layer were heavier than the carrier, it and the carrier would drive each other (Causin, Gerbeau & Nobile
-        2005); as it is far lighter, the delay is one of a step, in which sound crosses less than that layer.
+        Only the layer of water before the walls, a smoothing length thick, feels it through the wall particles'
+        pressures. If this layer were heavier than the carrier, it and the carrier would drive each other (Causin,
+        Gerbeau & Nobile 2005); as it is far lighter, the delay is one of a step, in which sound crosses less than that
+        layer.
         """
         gravity = self.carrier.gravity[0]
         if ti.static(self.moving):

@@ -11,6 +11,20 @@ from solvers.time.schedules import SCHEDULES, check_cut, moved
 PLAIN = ("steps", "unkicked", "observed", "room", "vectors", "among")  # attributes of a `Simulation`
 OF_ARRAYS = ("room", "units", "vectors", "among")  # those that its arrays follow from
 ONCE = ("steps", "room", "unkicked", "observed", "units", "schedule", "vectors", "among")  # in states without names
+RENAMED = {  # arrays and rows that earlier versions kept under other names
+    "water.excess": "water.deviation",
+    "water.span": "water.eigenvalue",
+    **{f"water.slope_{axis}": f"water.gradient_{axis}" for axis in "yz"},
+    **{f"water.layer_{n}_{axis}": f"water.end_wall_{n}_{axis}" for n in range(8) for axis in "yz"},
+    "water.forces.lost": "water.forces.dissipated",
+    "water.forces.held": "water.forces.stored",
+    "water.forces.work": "water.forces.wall_work",
+    "water.forces.lost_lately": "water.forces.dissipated_lately",
+    "water.forces.held_lately": "water.forces.stored_lately",
+    "water.forces.work_lately": "water.forces.wall_work_lately",
+    "water.continuity.lost": "water.continuity.diffused",
+    "water.census.behind": "water.diagnostics.behind",
+}
 
 
 def numbers_of(run) -> dict[str, int]:
@@ -38,6 +52,11 @@ def told_by(state: Mapping[str, np.ndarray]) -> dict[str, int]:
     if "room" not in found or any(np.ndim(number) or np.asarray(number).dtype.kind != "i" for number in found.values()):
         raise ValueError("its numbers are invalid")
     return {name: int(number) for name, number in found.items()}
+
+
+def renamed(state: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """A state with its arrays under the present names."""
+    return {RENAMED.get(name, name): values for name, values in state.items()}
 
 
 def take(run, state: Mapping[str, np.ndarray]) -> bool:

@@ -28,12 +28,12 @@ def both(width: float, height: float, depth: float, rows: int, **changes) -> Sce
     return scene_of(**{**given, "fluid": Fluid(water, drops[None]), **changes})
 
 
-def filled(places: np.ndarray, gas: np.ndarray, volume: float, excess: np.ndarray | float = 0.0) -> np.ndarray:
+def filled(places: np.ndarray, gas: np.ndarray, volume: float, deviation: np.ndarray | float = 0.0) -> np.ndarray:
     """Drops (1, n) at places (n, 2) m of equal volumes (m²), the water first; gas (n,) is 1 for air."""
     order = np.argsort(gas, kind="stable")
     drops = particles(1, len(places))
     drops["position"][0], drops["gas"][0], drops["volume"][0] = places[order], gas[order], volume
-    drops["excess"][0] = np.broadcast_to(excess, gas.shape)[order]
+    drops["deviation"][0] = np.broadcast_to(deviation, gas.shape)[order]
     return drops
 
 
@@ -86,7 +86,7 @@ class PlainBoth(PlainWater):
         return 2.0 * self.cohesion * (1.0 + s) ** 2
 
     def wall_pressure(self, r, mass, s, gas: float):
-        """The dummies' pressures that one phase sees: Adami, Hu & Adams (2012), eq. 27, over that phase alone."""
+        """The walls' pressures that one phase sees: Adami, Hu & Adams (2012), eq. 27, over that phase alone."""
         of, volume = self.gas == gas, self.volume(mass, s)
         apart, _, value, _ = self.between(self.wall, r)
         weight = (value * volume)[:, of]
@@ -95,7 +95,7 @@ class PlainBoth(PlainWater):
         return found if gas else np.maximum(found, 0.0)
 
     def image(self, r, u, volume):
-        """What air sees of dummies: the flow of water along their walls, by its share and the weight of the pair."""
+        """What air sees of walls: the flow of water along them, by its share and the weight of the pair."""
         apart, _, value, _ = self.between(self.wall, r)
         seen, water = value * volume, value * volume * (1.0 - self.gas)
         inward = (seen[..., None] * apart).sum(axis=1)
@@ -123,8 +123,8 @@ class PlainBoth(PlainWater):
         walls = -(((own[:, None] + seen) * volume[:, None] * self.wall_volume)[..., None] * at_wall).sum(axis=1)
         matrix = np.einsum("ij,j,ija,ijb->iab", same, volume, apart, gradient)
         raw = np.einsum("ij,j,ij,ija->ia", same, volume, s[None] - s[:, None], gradient)
-        self.span = np.linalg.eigvalsh(matrix)[:, 0]
-        regular = self.span > 0.05
+        self.eigenvalue = np.linalg.eigvalsh(matrix)[:, 0]
+        regular = self.eigenvalue > 0.05
         slope = np.zeros_like(r)
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
@@ -150,16 +150,16 @@ class PlainBoth(PlainWater):
 
     @property
     def least(self) -> float:
-        """The excess of density of water that bears the suction of the background."""
+        """The density deviation of water that bears the suction of the background."""
         return -self.water.background / (self.water.density * self.water.sound_speed**2)
 
     def later(self, r, u, s, mass, slope, pressed, dt, mixed=None):
-        """The excess of density after a step, from its middle; water with few of its kind about bears no suction.
+        """The density deviation after a step, from its middle; water with few of its kind about bears no suction.
 
         `mixed`: what the method of that name gave at the start of the step; None where it does not act.
         """
         wet = self.gas < 0.5
-        spray = (self.span < 0.2) & wet
+        spray = (self.eigenvalue < 0.2) & wet
         (full, keeping, rest), before = mixed or (np.ones_like(s), 0.0, s), s
         for rate, more in zip(self.rates(r, u, s, mass, slope, pressed), (keeping, 0.0), strict=True):
             s = s + dt * (rate + more)
@@ -190,7 +190,7 @@ class PlainBoth(PlainWater):
 def held(run: Simulation) -> list[np.ndarray]:
     """Places, velocities, s, masses, accelerations and slopes of all particles, by their numbers."""
     p = run.water.particles
-    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.excess, p.mass, *p.acceleration, *p.slope)
+    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.deviation, p.mass, *p.acceleration, *p.gradient)
     pairs = [np.stack(pair, axis=-1)[0] for pair in ((y, z), (v, w), rest[0:2], rest[2:4])]
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
@@ -202,7 +202,7 @@ def follows_double_sums(run: Simulation, steps: int = 7) -> None:
     r, u, s, m, *_ = held(run)
     run.advance(1)
     push, slope, _ = plain.push(r, u, s, m)
-    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if run.water.forces.fullness.acts else None
+    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if run.water.forces.voids.acts else None
     pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
     u = u + dt * (push + plain.weighs[:, None] * plain.gravity)
     middle = r + 0.5 * dt * u

@@ -26,7 +26,7 @@ def lattice(width: float, depth: float, spacing: float, sound: float, left: floa
     grid = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
     drops = particles(1, len(grid))
     drops["position"][0] = grid
-    drops["excess"][0] = GRAVITY * (depth - grid[:, 1]) / sound**2
+    drops["deviation"][0] = GRAVITY * (depth - grid[:, 1]) / sound**2
     drops["volume"][0] = spacing**2
     return drops
 
@@ -52,8 +52,8 @@ def again(run: Simulation, scene: Scene) -> Simulation:
     else:
         run.dt, run.longest_step = scene.time_step(), scene.longest_step(1.0)
     if scene.fluid.water != run.scene.fluid.water:
-        stiffening = run.water.stiffening
-        stiffening.soft = stiffening.stiff = stiffening.now = scene.fluid.water
+        sound_switch = run.water.sound_switch
+        sound_switch.soft = sound_switch.stiff = sound_switch.now = scene.fluid.water
     run.scene, run.water.fluid = scene, scene.fluid
     run.alter(scene)
     run.start_clock()

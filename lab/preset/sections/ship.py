@@ -48,10 +48,10 @@ class Ship:
     in the hull's own axes. A box may have a `hatch`: its coaming keeps water out as sides do, and its upper edges are
     openings. Sway and heave are the motions of her axis from its position at rest (`axis_motion`), in equations,
     recordings, figures and pictures; she is heeled about it. With a negative GM she lolls, and ω₀ is that of small
-    rolls about her angle of loll. `damping` and `quadratic_damping` are those of
-    φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `hydrodynamics` changes what is linear in waves and motion. Buoyancy is that of her
-    section times `length`, or with `offsets` of her whole hull, on an even keel. The default of `repose` is that of the
-    source's acetate, the first of the critical angles that it found by tilting (Spandonidis 2016, section 7.1).
+    rolls about her angle of loll. `damping` and `quadratic_damping` are those of φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ.
+    `hydrodynamics` changes what is linear in waves and motion. Buoyancy is that of her section times `length`, or with
+    `offsets` of her whole hull, on an even keel. The default of `repose` is that of the source's acetate, the first of
+    the critical angles that it found by tilting (Spandonidis 2016, section 7.1).
     """
 
     draught: Annotated[Length, Doc("Draught with her cargo aboard.")]

@@ -7,7 +7,7 @@ import numpy as np
 
 from lab.studies.verify.plain import across, turned
 from solvers.fluid.kernels.wendland_c2 import WendlandC2
-from solvers.fluid.surface.fullness import PACKED, RAMP, plane
+from solvers.fluid.surface.void_indicator import PACKING, RAMP, plane
 from solvers.fluid.walls.layers import layers
 from solvers.scene import Scene
 
@@ -24,7 +24,8 @@ def kernel(distance: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]
 class PlainWater:
     """The equations of a box with free slip, linear state, Antuono's diffusion and artificial viscosity.
 
-    `felt` (n, 2) m/s² is gravity less the acceleration of each dummy, `speed` (n, 2) m/s its velocity: at rest here.
+    `felt` (n, 2) m/s² is gravity less the acceleration of each wall particle, `speed` (n, 2) m/s its velocity: at rest
+    here.
     """
 
     liquid: np.ndarray | float = 1.0  # 1 for water, 0 for air
@@ -80,7 +81,7 @@ class PlainWater:
         return (force + walls) / mass[:, None], slope, walls
 
     def along_walls(self, r, mass, s) -> np.ndarray:
-        """What is taken from that, so that the dummies' own pressures do not push along straight walls in sum."""
+        """What is taken from that: wall particles' own pressures do not push along straight walls in sum."""
         volume = self.volume(mass, s) * self.liquid
         _, _, value, gradient = self.between(r, self.wall)
         seen = np.maximum(volume @ value, 1e-30)
@@ -89,7 +90,7 @@ class PlainWater:
         return volume[:, None] * (value @ (strength[:, None] * self.straight))
 
     def closing(self, r, u, s, mass, pressed) -> np.ndarray:
-        """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces.
+        """Minus what wall particles that are `pressed` add to the divergence: the adjoint of their pressures' forces.
 
         They slide over the tank with the mean velocity of the water, square to the shortest line to the tank.
         """
@@ -102,7 +103,7 @@ class PlainWater:
         return self.liquid * (value @ (self.wall_volume * closed / np.maximum(seen, 1e-30)))
 
     def fullness(self, r: np.ndarray, mass: np.ndarray, s: np.ndarray, plane: float) -> tuple[np.ndarray, np.ndarray]:
-        """½ Σ V (−W'/r) r² + b |Σ V ∇W| over water and dummies, b being `plane` (m), and its second part alone."""
+        """½ Σ V (−W'/r) r² + b |Σ V ∇W| over water and walls, b being `plane` (m), and its second part alone."""
         both, volume = np.concatenate([r, self.wall]), np.append(self.volume(mass, s), self.wall_volume)
         apart, _, _, gradient = self.between(r, both)
         trace = (apart * gradient).sum(axis=2) @ volume
@@ -127,7 +128,7 @@ class PlainWater:
         return fullness / lattice - 1.0
 
     def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:
-        """Rate of s, in the middle of a step at whose start dummies were `pressed`."""
+        """Rate of s, in the middle of a step at whose start wall particles were `pressed`."""
         water, volume = self.water, self.volume(mass, s)
         apart, _, _, gradient = self.between(r, r)
         flow = ((u[None] - u[:, None]) * gradient).sum(axis=2) @ volume
@@ -173,7 +174,7 @@ class EarthWater(PlainWater):
         self.felt = self.gravity - (pose.acceleration + pose.gain * across(arm) - pose.rate**2 * arm)
 
     def step(self, r, u, s, mass, time: float, dt: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Places, velocities, half a step behind, and excesses of density a step of dt (s) after a time (s)."""
+        """Places, velocities, half a step behind, and density deviations a step of dt (s) after a time (s)."""
         self.stand(time)
         push, slope, _ = self.push(r, u, s, mass)
         pressed = self.wall_pressure(r, mass, s) > 0.0
@@ -182,5 +183,5 @@ class EarthWater(PlainWater):
         middle = r + 0.5 * dt * u
         self.stand(time + 0.5 * dt)
         s = s + dt * (self.rate(middle, u, s, mass, slope, pressed) + self.keeping(full, lacking, s))
-        relief = self.water.sound_speed / self.water.length * np.clip((PACKED - full) / RAMP, 0.0, 1.0)
+        relief = self.water.sound_speed / self.water.length * np.clip((PACKING - full) / RAMP, 0.0, 1.0)
         return middle + 0.5 * dt * u, u, s / (1.0 + dt * relief)

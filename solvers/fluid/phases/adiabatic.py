@@ -6,11 +6,11 @@ import taichi as ti
 from solvers.fluid.given import Air, Water
 
 GAMMA = 1.4  # ratio of the specific heats of air
-FULL = 2.4 ** (1.0 / GAMMA) - 1.0  # excess of density at which p = ρ_a c², beyond which air resists no further
+FULL = 2.4 ** (1.0 / GAMMA) - 1.0  # density deviation at which p = ρ_a c², beyond which air resists no further
 HELD = (
     (1.0 + FULL) ** (GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + FULL) - GAMMA / (GAMMA - 1.0)
 ) / GAMMA  # energy there
-NEAR = 1e-2  # excess of density below which the energy is told by its series
+NEAR = 1e-2  # density deviation below which the energy is told by its series
 BORNE = 0.3  # of p_a: suction that air bears without being torn apart
 SHAKEN = 0.02  # of ρ c² of the water: from about 0.1 on a background pressure stirs it
 STEEPEST = 0.743  # of 1/h: the gradient of the phase in a plane surface, ∫ W along a line (Wendland C2)
@@ -53,7 +53,7 @@ class Adiabatic:
     @staticmethod
     @ti.func
     def share(s):
-        """p/(ρ_a c²) for the excess of density s = ρ/ρ_a − 1, a single number."""
+        """p/(ρ_a c²) for the density deviation s = ρ/ρ_a − 1, a single number."""
         return ti.min((ti.pow(1.0 + s, GAMMA) - 1.0) / GAMMA, 1.0)
 
     @staticmethod
@@ -62,12 +62,12 @@ class Adiabatic:
         return np.minimum(np.expm1(GAMMA * np.log1p(np.asarray(s, dtype=float))) / GAMMA, 1.0)
 
     @staticmethod
-    def excess(share: np.ndarray) -> np.ndarray:
-        """The excess of density s at which p/(ρ_a c²) is `share`."""
+    def deviation(share: np.ndarray) -> np.ndarray:
+        """The density deviation s at which p/(ρ_a c²) is `share`."""
         return np.expm1(np.log1p(GAMMA * np.asarray(share, dtype=float)) / GAMMA)
 
     @staticmethod
-    def held(s: np.ndarray) -> np.ndarray:
+    def elastic(s: np.ndarray) -> np.ndarray:
         """As `energy`, of an array."""
         s = np.asarray(s, dtype=float)
         low = np.minimum(s, FULL)

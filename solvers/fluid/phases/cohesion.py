@@ -13,7 +13,7 @@ class Cohesion:
     Rogers, Stansby & Domínguez (2015) have it. L is a length of the scene, here the depth of the water. The source
     prints 2 a ρ_a² in eq. 10 and a = 1.5 g (ρ_w − ρ_a) L, its fractions lost: units ask for 2 a ρ_a there, an
     acceleration, and for that a. It tells neither X nor what eq. 10 is summed over; here X = a ρ_a², so that air at
-    its density has no pressure, and the sum is over all neighbours, dummies too.
+    its density has no pressure, and the sum is over all neighbours, wall particles too.
 
     What it does (own derivation): between particles of air both terms together are 2 X + a (ρ_i² − ρ_j²), a background
     pressure and the gradient of −a ρ² by differences. From water air feels 2 X, too, and water nothing of it in turn.
@@ -43,19 +43,19 @@ class Cohesion:
 
     @staticmethod
     def pressure(pull: float, s: np.ndarray) -> np.ndarray:
-        """X − a ρ² (Pa) for excesses of density s = ρ/ρ_a − 1."""
+        """X − a ρ² (Pa) for density deviations s = ρ/ρ_a − 1."""
         return -pull * s * (2.0 + s)
 
     @staticmethod
     @ti.func
     def share(s):
-        """(X − a ρ²)/X for an excess of density."""
+        """(X − a ρ²)/X for a density deviation."""
         return (0.0 - s) * (2.0 + s)
 
     @staticmethod
     @ti.func
     def push(s):
-        """2 a ρ²/X for an excess of density."""
+        """2 a ρ²/X for a density deviation."""
         return 2.0 * (1.0 + s) * (1.0 + s)
 
     @staticmethod

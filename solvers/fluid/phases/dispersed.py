@@ -7,9 +7,9 @@ from solvers.fluid.state import Particles
 from solvers.machine.state import Axis, State
 
 FAINT = 0.02  # of full coverage by the other phase: what sees less of it has none about it
-GONE = 9.0  # excess of density of a bubble of which nothing is left: a tenth of its volume
+GONE = 9.0  # density deviation of a bubble of which nothing is left: a tenth of its volume
 LIGHT = 0.1  # of the water's density: a fluid that is heavier may hang below its lid, by suction
-ALONE = 0.5  # fullness of air without walls below which it is such a bubble: four spacings across
+ALONE = 0.5  # F of air without walls below which it is such a bubble: four spacings across
 
 
 @ti.data_oriented
@@ -17,9 +17,9 @@ class Dispersed:
     """p_i → Σ V_j p_j W / Σ V_j W over the other phase j, at the rate c/h, where the own phase is broken.
 
     A drop or a bubble below the spacing has no pressure of its own: that of both phases relaxes to one, as soon as
-    sound crosses it (Baer & Nunziato 1986; Saurel & Abgrall 1999, who relax at once). Broken is what `Fullness` says of
-    the own phase alone. Without, drops in air keep the density that followed from how water came near: a drop over a
-    pool counts as pressed from 2 h on, hovers on air that it cannot press out, and in time drops fill the air.
+    sound crosses it (Baer & Nunziato 1986; Saurel & Abgrall 1999, who relax at once). Broken is what `VoidIndicator`
+    says of the own phase alone. Without, drops in air keep the density that followed from how water came near: a drop
+    over a pool counts as pressed from 2 h on, hovers on air that it cannot press out, and in time drops fill the air.
 
     Air that is trapped keeps the pressure of its own density; that of bubbles made equal to the water's would make
     energy from nothing. It holds no more than ρ_a c² (`Adiabatic`): in deeper water a bubble is squeezed without bound,
@@ -30,7 +30,7 @@ class Dispersed:
     attract each other, and a void that a few are to fill throws them about (Monaghan 2000). A bubble that is drawn out
     further relaxes to the density that bears it, where its elastic energy with the background's is least: the water
     does not feel more, and a particle along a wall was drawn out to −49 kPa among water of 0.7 kPa, whose energy came
-    from nothing. `rest` is the excess of density s with the pressure of the other phase. Water that touches no air is
+    from nothing. `rest` is the density deviation s with the pressure of the other phase. Water that touches no air is
     in a void, and bears nothing.
 
     Limits: drops and bubbles of up to four spacings; not with tension, whose drops are to be resolved, nor cohesion.
@@ -77,7 +77,7 @@ class Dispersed:
 
     @ti.func
     def off(self, b, s, after, loose, share):
-        """What excesses of density `s`, which are `after` a step, are to lose: water a share, air what is too much.
+        """What density deviations `s`, which are `after` a step, are to lose: water a share, air what is too much.
 
         Air that is stretched beyond what it bears gets a share of what it lacks to that.
         """

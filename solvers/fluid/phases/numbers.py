@@ -6,7 +6,7 @@ from solvers.fluid.given import Water
 from solvers.fluid.phases.adiabatic import Adiabatic
 from solvers.fluid.phases.dispersed import ALONE, LIGHT
 from solvers.fluid.phases.interfaces import INTERFACES
-from solvers.fluid.phases.reduced import Reduced
+from solvers.fluid.phases.reduced_pressure import ReducedPressure
 
 UNBOUNDED = 1e20  # Pa
 TORN = 0.5  # of ρ_a c²: suction that air is said to bear at most; its vacuum is at 1/1.4
@@ -35,11 +35,11 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "air_spread": water.delta * water.length * air.sound_speed,
         "air_strength": strength,
         "both_strength": 2.0 * own * strength / max(own + strength, 1e-300),
-        "hydrostatic": Reduced.weight(water, gravity) / water.sound_speed**2,
+        "hydrostatic": ReducedPressure.weight(water, gravity) / water.sound_speed**2,
         "air_hydrostatic": (gravity if air.reduced is None else 0.0) / air.sound_speed**2,
-        "air_packed": ALONE,
+        "air_packing": ALONE,
         "least": 0.0 if light else -UNBOUNDED,  # Pa, with the background's
-        "air_thinnest": float(Adiabatic.excess(-min(water.background / stiffness, TORN))) if light else -1.0,
+        "air_thinnest": float(Adiabatic.deviation(-min(water.background / stiffness, TORN))) if light else -1.0,
         "air_keeping": numbers["keeping"] * air.sound_speed / water.sound_speed,
         "air_hard": FIRMER * numbers["hard"] * stiffness / numbers["stiffness"],
         "lean_of_pressure": lean_of_pressure,
@@ -48,4 +48,4 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "cohesion": air.cohesion,
         "vent": CONTRACTED * air.vent,
         "air_pace": FASTEST[0] * water.sound_speed / (FASTEST[1] * air.sound_speed),
-    } | Reduced.numbers(water)
+    } | ReducedPressure.numbers(water)

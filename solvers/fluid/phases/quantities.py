@@ -1,4 +1,4 @@
-"""What is known of the air in a tank with water: its sums (`census`), and each of its particles (`state`)."""
+"""What is known of the air in a tank with water: its sums (`diagnostics`), and each of its particles (`state`)."""
 
 from solvers.machine.quantity import Quantity, directions
 

@@ -14,7 +14,7 @@ class Tension:
     """m_i du_i/dt += Σ V_i V_j (Π_i + Π_j)·∇W, Π = σ (|∇C| I − ∇C ∇C/|∇C|) (Lafaurie et al. 1994; Hu & Adams 2006).
 
     C is 0 in water and 1 in air, ∇C_i = Σ V_j (C_j − C_i) ∇W. Forces are equal and opposite. The stress is that of the
-    step before. Dummies have no phase of their own: the surface stands on walls at a right angle.
+    step before. Wall particles have no phase of their own: the surface stands on walls at a right angle.
 
     The energy of the surface is σ Σ V_i |∇C_i|, the trace of V Π. It is the whole stress that follows from this energy
     (own derivation); that of Hu & Adams, eqs. 20 to 22, has |∇C| I/2 instead, and leaves a pressure of −σ |∇C|/2 to the
@@ -27,7 +27,7 @@ class Tension:
         self.particles, self.constants = particles, constants
 
     @ti.func
-    def publish(self, b):
+    def update_state(self, b):
         """Let the neighbours of a block see its stresses of the step before, while it notes those of this step."""
         p = self.particles
         for k in ti.static(range(3)):
@@ -50,12 +50,12 @@ class Tension:
         push[1] = push[1] - weight * (yz * apart[0] + zz * apart[1])
 
     @ti.func
-    def note(self, b, slope: ti.template()):
+    def note(self, b, gradient: ti.template()):
         """Store the stresses of a block from its gradient ∇C (1/m), for the next step."""
         p, c = self.particles, self.constants
-        size = ti.sqrt(dot(slope, slope))
+        size = ti.sqrt(dot(gradient, gradient))
         strength = ti.select(size * c.get("reach") > FAINT, p.ones() * c.get("tension"), p.zeros())
         least = ti.max(size, 1e-20)
-        p.store(p.stress[0], b, strength * (size - slope[0] * slope[0] / least))
-        p.store(p.stress[1], b, strength * (slope[0] * slope[1] / least) * (-1.0))
-        p.store(p.stress[2], b, strength * (size - slope[1] * slope[1] / least))
+        p.store(p.stress[0], b, strength * (size - gradient[0] * gradient[0] / least))
+        p.store(p.stress[1], b, strength * (gradient[0] * gradient[1] / least) * (-1.0))
+        p.store(p.stress[2], b, strength * (size - gradient[1] * gradient[1] / least))

@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.given import Air
-from solvers.fluid.lists import Medium
+from solvers.fluid.lists import FluidContext
 from solvers.fluid.state import UNUSED
 from solvers.machine.state import Axis, State
 
@@ -11,7 +11,7 @@ MOST = 0.5  # of what would even the pressures out, in a step
 
 
 @ti.data_oriented
-class Vent:
+class OutflowVent:
     """dM/dt = −C_d A √(2 ρ |p|) sgn p, C_d = 0.6: flow through openings of an area A (Bernoulli; Torricelli's law).
 
     M is the mass of the air, p its mean pressure over that outside, ρ its mean density. All particles of air share in
@@ -20,13 +20,13 @@ class Vent:
     Limits: slow flow, Mach 0.3; water does not come out. Units: M kg/m, A m² a metre of thickness, p Pa.
     """
 
-    def __init__(self, arrays: State, medium: Medium, air: Air | None):
-        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
-        self.constants, self.acts = medium.constants, air is not None and air.vent > 0.0
+    def __init__(self, arrays: State, context: FluidContext, air: Air | None):
+        self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
+        self.constants, self.acts = context.constants, air is not None and air.vent > 0.0
         if self.acts:
             own = arrays.under("water.vent")
             sums = "pressed", "room", "mass"
-            self.pressed, self.room, self.mass = own.reals((medium.units.axis,), *sums, kind=own.exact, kept=False)
+            self.pressed, self.room, self.mass = own.reals((context.units.axis,), *sums, kind=own.exact, kept=False)
             (self.gain,) = own.reals((Axis("world", self.particles.worlds),), "gain", kind=own.exact, kept=False)
 
     @ti.func
@@ -35,7 +35,7 @@ class Vent:
         p = self.particles
         zero = ti.cast(0.0, p.exact)
         pressed, room, mass = zero, zero, zero
-        first, end = self.shares.wet(u)
+        first, end = self.ranges.fluid(u)
         for b in range(first, end):
             for lane in range(p.lanes):
                 if p.number[b, lane] != UNUSED and p.gas[b, lane] > 0.5:
@@ -59,7 +59,7 @@ class Vent:
 
     @ti.func
     def pass_through(self, w, b, gas: ti.template(), s: ti.template()):
-        """Give a block of particles its share of the gain; returns their excesses of density."""
+        """Give a block of particles its share of the gain; returns their density deviations."""
         p = self.particles
         share = 1.0 + gas * ti.cast(self.gain[w], p.real)
         p.store(p.mass, b, p.load(p.mass, b) * share)

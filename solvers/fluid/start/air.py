@@ -11,7 +11,7 @@ from solvers.fluid.start.packing import packed
 
 
 def hydrostatic_air(height: np.ndarray, gravity: float, sound: float) -> np.ndarray:
-    """Relative excess of density s = ρ/ρ_a − 1 of air at rest at heights (m) over where its pressure is that outside.
+    """Relative density deviation s = ρ/ρ_a − 1 of air at rest at heights (m) over where its pressure is that outside.
 
     dp/dz = −ρ g with p = p_a ((ρ/ρ_a)^1.4 − 1) gives (ρ/ρ_a)^0.4 = 1 − 0.4 g z/c². Raises ValueError where no air of
     so low a speed of sound can be that high.
@@ -22,12 +22,12 @@ def hydrostatic_air(height: np.ndarray, gravity: float, sound: float) -> np.ndar
     return share ** (1.0 / (GAMMA - 1.0)) - 1.0
 
 
-def excess_at_rest(height: np.ndarray, volume: np.ndarray, water: Water, gravity: float) -> np.ndarray:
+def deviation_at_rest(height: np.ndarray, volume: np.ndarray, water: Water, gravity: float) -> np.ndarray:
     """As `hydrostatic_air`, of particles (n,) with volumes (m²); air that is soft at first has its mass when stiff.
 
     Soft air is lighter by its own weight. If it kept that, it would be under suction in a closed tank once it is
     stiff; so its density is higher by as much everywhere, which lifts its pressure by half its weight at most. Where
-    pressures are reduced (`Reduced`) there is no excess.
+    pressures are reduced (`ReducedPressure`) there is no deviation.
     """
     if water.air.reduced is not None:
         return np.zeros(len(height))
@@ -50,7 +50,7 @@ def air_above(polygon: np.ndarray, level: float, water: Water, gravity: float) -
         points, volume = packing.points, packing.volume
     air = particles(len(points))
     air["position"], air["volume"], air["gas"] = points * [1.0, -1.0], volume, True
-    air["excess"] = excess_at_rest(air["position"][:, 1] - level, air["volume"], water, gravity)
+    air["deviation"] = deviation_at_rest(air["position"][:, 1] - level, air["volume"], water, gravity)
     return air
 
 
@@ -64,7 +64,7 @@ def air_round(polygon: np.ndarray, region: np.ndarray, water: Water, gravity: fl
     packing = packed(polygon, top, whole, [region])
     air = particles(len(packing.points))
     air["position"], air["volume"], air["gas"] = packing.points, packing.volume, True
-    air["excess"] = excess_at_rest(air["position"][:, 1] - level, air["volume"], water, gravity)
+    air["deviation"] = deviation_at_rest(air["position"][:, 1] - level, air["volume"], water, gravity)
     return air
 
 

@@ -62,5 +62,5 @@ def vortex_pressure(place: np.ndarray, sides: np.ndarray) -> np.ndarray:
 
 
 def compressed(pressure: np.ndarray, water: Water) -> np.ndarray:
-    """Relative excess of density of a water under p/ρ0 (n,) m²/s²."""
-    return STATES[water.state].excess(pressure / water.sound_speed**2)
+    """Relative density deviation of a water under p/ρ0 (n,) m²/s²."""
+    return STATES[water.state].deviation(pressure / water.sound_speed**2)

@@ -27,8 +27,8 @@ KEPT = 8  # packings that are remembered: repeats, and runs of a sweep, start al
 class Packing:
     """Particles at `points` (n, 2) m, each of a `volume` (m²), and how even they are after so many `steps`.
 
-    `push` (n, 2) is −Δx Σ V ∇W of each over the others and the dummies, `cover` (n,) is Γ = Σ V W: 0 and 1 in a liquid
-    without particles.
+    `push` (n, 2) is −Δx Σ V ∇W of each over the others and the wall particles, `cover` (n,) is Γ = Σ V W: 0 and 1 in a
+    liquid without particles.
     """
 
     points: np.ndarray
@@ -41,11 +41,11 @@ class Packing:
 def packed(polygon: np.ndarray, level: float, water: Water, holes: Sequence[np.ndarray] = ()) -> Packing:
     """Particles that fill a polygon (m, 2) m up to a `level` (m), apart from `holes`, closed polygons (k, 2) m within.
 
-    Damped relaxation under a pressure that is everywhere the same, du/dt = −2 p/ρ Σ V ∇W − ζ u, between dummies on all
-    sides, the surface included (after Colagrossi, Bouscasse, Antuono & Marrone 2012). The dummies are those of the run,
-    W is Wendland's C2 with the smoothing length of the run. The start is a sequence that fills the plane evenly along
-    no axis, so that the particles end in no order: a lattice under pressure is elastic, water is not. The end is where
-    Δx |Σ V ∇W| is below EVEN for all particles, or after STEPS.
+    Damped relaxation under a pressure that is everywhere the same, du/dt = −2 p/ρ Σ V ∇W − ζ u, between wall particles
+    on all sides, the surface included (after Colagrossi, Bouscasse, Antuono & Marrone 2012). Wall particles are those
+    of the run, W is Wendland's C2 with the smoothing length of the run. The start is a sequence that fills the plane
+    evenly along no axis, so that the particles end in no order: a lattice under pressure is elastic, water is not. The
+    end is where Δx |Σ V ∇W| is below EVEN for all particles, or after STEPS.
 
     There are as many particles as spacings squared in the area, to the nearest; their volumes are equal and their sum
     is exactly the area. Polygons are counter-clockwise. The result is the same in every call. Raises ValueError if no
@@ -65,8 +65,8 @@ def _packed(shapes: tuple, level: float, spacing: float, smoothing: float) -> Pa
         raise ValueError("no particle of this spacing fits in")
     rows = int(np.ceil(2.0 * smoothing - 1e-9))
     sides = [layers(polygon, spacing, rows), *(layers(hole[::-1], spacing, rows) for hole in holes)]
-    dummies, volumes, _ = (np.concatenate(parts) for parts in zip(*sides, strict=True))
-    crowd = Crowd(scattered(polygon, holes, count), area / count, dummies, volumes, smoothing * spacing)
+    walls, volumes, _ = (np.concatenate(parts) for parts in zip(*sides, strict=True))
+    crowd = Crowd(scattered(polygon, holes, count), area / count, walls, volumes, smoothing * spacing)
     steps = relax(crowd, spacing, PUSH * min(1.0, smoothing / 2.0) ** 2)
     return Packing(crowd.points, area / count, spacing * crowd.pushes(), crowd.covers(), steps)
 
@@ -118,14 +118,14 @@ def relax(crowd: "Crowd", spacing: float, pace: float) -> int:
 
 
 class Crowd:
-    """Particles at `points` (n, 2) m of one `volume` (m²) among fixed `dummies` (k, 2) m of `volumes` (k,) m²."""
+    """Particles at `points` (n, 2) m of one `volume` (m²) among fixed `walls` (k, 2) m of `volumes` (k,) m²."""
 
-    def __init__(self, points: np.ndarray, volume: float, dummies: np.ndarray, volumes: np.ndarray, length: float):
+    def __init__(self, points: np.ndarray, volume: float, walls: np.ndarray, volumes: np.ndarray, length: float):
         self.points, self.volume, self.length = points, volume, length
         from scipy.spatial import cKDTree  # here, so that runs without water do not wait for it
 
         self.make_tree = cKDTree
-        self.dummies, self.volumes, self.tree = dummies, volumes, cKDTree(dummies)
+        self.walls, self.volumes, self.tree = walls, volumes, cKDTree(walls)
         self.look(SKIN * length)
 
     def look(self, skin: float) -> None:
@@ -145,9 +145,9 @@ class Crowd:
             self.look(self.skin)
 
     def pairs(self) -> tuple[tuple[list[np.ndarray], np.ndarray], tuple[list[np.ndarray], np.ndarray]]:
-        """r_i − r_j by axes (m) and t = 1 − r/2h ≥ 0, of two particles, and of a particle and a dummy."""
+        """r_i − r_j by axes (m) and t = 1 − r/2h ≥ 0, of two particles, and of a particle and a wall particle."""
         found = []
-        for ours, theirs, others in ((self.first, self.second, self.points), (self.wet, self.dry, self.dummies)):
+        for ours, theirs, others in ((self.first, self.second, self.points), (self.wet, self.dry, self.walls)):
             apart = [
                 mine[ours] - their[theirs] for mine, their in zip(columns(self.points), columns(others), strict=True)
             ]
@@ -177,7 +177,7 @@ class Crowd:
         return self.volume * each + np.bincount(self.wet, outer, count)
 
     def parted(self, inner: np.ndarray, outer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Weights of pairs of particles, and of particles and dummies, but for what is hidden: nothing here."""
+        """Weights of pairs of particles, and of particles and wall particles, but for what is hidden: nothing here."""
         return inner, outer
 
 

@@ -33,7 +33,7 @@ class Line:
         return self.way[0] * y + self.way[1] * z, self.way[0] * z - self.way[1] * y
 
     def hides(self, a: np.ndarray, b: np.ndarray, blur: float) -> np.ndarray:
-        """The share (n,) of points `b` (n, 2) m that is hidden from `a`, as of `Sight`; `blur` (m) is its h."""
+        """The share (n,) of points `b` (n, 2) m that is hidden from `a`, as of `Visibility`; `blur` (m) is its h."""
         (along, across), (along_b, across_b) = self.of(a), self.of(b)
         crossed = across * across_b < 0.0
         through = along - (along_b - along) * across / np.where(crossed, across_b - across, 1.0)
@@ -42,18 +42,18 @@ class Line:
 
 
 class Parted(Crowd):
-    """A crowd parted by the plates `lines`; `owner` (k,) is the one that a dummy belongs to, −1 for none."""
+    """A crowd parted by the plates `lines`; `owner` (k,) is the one that a wall particle belongs to, −1 for none."""
 
     def __init__(self, crowd: tuple, lines: Sequence[Line], owner: np.ndarray):
         self.lines, self.owner = lines, owner
         super().__init__(*crowd)
 
     def look(self, skin: float) -> None:
-        """As of `Crowd`; of all pairs notes those that each plate may part, and those with dummies of its own."""
+        """As of `Crowd`; of all pairs notes those that each plate may part, and those with its own wall particles."""
         super().look(skin)
         reach, self.near = 2.0 * self.length + 2.0 * skin, []
         for q, line in enumerate(self.lines):
-            near, dry = (self._near(line, points, reach) for points in (self.points, self.dummies))
+            near, dry = (self._near(line, points, reach) for points in (self.points, self.walls))
             own = self.owner[self.dry] == q
             inner = np.flatnonzero(near[self.first] & near[self.second])
             self.near.append((inner, np.flatnonzero(own | near[self.wet] & dry[self.dry])))
@@ -64,12 +64,12 @@ class Parted(Crowd):
         return (np.abs(across) < reach) & (along > line.low - reach) & (along < line.high + reach)
 
     def parted(self, inner: np.ndarray, outer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The weights of pairs of particles, and of particles and dummies, of which plates hide what is behind them."""
+        """The weights of pairs of particles, and of particles and walls, of which plates hide what is behind them."""
         for q, (line, (here, there)) in enumerate(zip(self.lines, self.near, strict=True)):
             first, second = self.points[self.first[here]], self.points[self.second[here]]
             inner[here] *= 1.0 - line.hides(first, second, self.length)
             dry = self.dry[there]
-            hidden = line.hides(self.points[self.wet[there]], self.dummies[dry], self.length)
+            hidden = line.hides(self.points[self.wet[there]], self.walls[dry], self.length)
             outer[there] *= np.where(self.owner[dry] == q, hidden, 1.0 - hidden)
         return inner, outer
 
@@ -85,8 +85,8 @@ def packed_beside(
 ) -> Packing:
     """Particles that fill a polygon (m, 2) m up to a `level` (m) beside plates and round bodies, as of `packed`.
 
-    The dummies of plates and bodies are those of the run, and so is who sees whom past a plate (`Sight`); ends that
-    touch the tank's `outline` (m, 2) m reach on into it. Raises ValueError if no particle fits in.
+    The wall particles of plates and bodies are those of the run, and so is who sees whom past a plate (`Visibility`);
+    ends that touch the tank's `outline` (m, 2) m reach on into it. Raises ValueError if no particle fits in.
 
     Limits: where a plate parts the water, the particles on either side are as many as the sequence has there, one more
     or less than their part of the area.
@@ -112,11 +112,11 @@ def _packed(shapes: tuple, level: float, spacing: float, smoothing: float, drawn
     found = [layers(polygon, spacing, rows), *(layers(hole[::-1], spacing, rows) for hole in holes)]
     owner = np.full(sum(len(points) for points, *_ in found), -1)
     found += [sheet(ends, spacing, rows) for ends in drawn_as]
-    dummies, volumes, _ = (np.concatenate(each) for each in zip(*found, strict=True))
+    walls, volumes, _ = (np.concatenate(each) for each in zip(*found, strict=True))
     own = [np.full(len(points), q) for q, (points, *_) in enumerate(found[len(found) - len(plates) :])]
     lines = [_line(ends, outline, spacing, 2.0 * smoothing * spacing) for ends in drawn_as]
     points = scattered(polygon, holes, count)
-    made = points, area / count, dummies, volumes, smoothing * spacing
+    made = points, area / count, walls, volumes, smoothing * spacing
     crowd = Parted(made, lines, np.concatenate([owner, *own]))
     steps = relax(crowd, spacing, PUSH * min(1.0, smoothing / 2.0) ** 2)
     return Packing(crowd.points, area / count, spacing * crowd.pushes(), crowd.covers(), steps)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from solvers.fluid.given import Water, particles
-from solvers.fluid.phases.reduced import Reduced
+from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.start.lattice import lattice
 from solvers.fluid.start.packing import packed
 from solvers.fluid.start.plates import packed_beside
@@ -32,8 +32,8 @@ STARTS: dict[str, Callable[[np.ndarray, float, Water], tuple[np.ndarray, float]]
 }
 
 
-def hydrostatic_excess(depth: np.ndarray, gravity: float, sound: float, state: str) -> np.ndarray:
-    """Relative excess of density s = ρ/ρ0 − 1 of water at rest at depths (m) below its surface.
+def hydrostatic_deviation(depth: np.ndarray, gravity: float, sound: float, state: str) -> np.ndarray:
+    """Relative density deviation s = ρ/ρ0 − 1 of water at rest at depths (m) below its surface.
 
     dp/dz = −ρ g with p = ρ0 c0²/γ ((ρ/ρ0)^γ − 1) gives (ρ/ρ0)^(γ−1) = 1 + (γ − 1) g d/c0²; for the linear equation of
     state, γ = 1, ρ/ρ0 = exp(g d/c0²). Own derivation.
@@ -65,8 +65,8 @@ def at_rest(
         points, volume = STARTS[water.start](polygon, level, water)
     found = particles(len(points))
     found["position"] = points
-    weight = Reduced.weight(water, gravity)
-    found["excess"] = hydrostatic_excess(level - points[:, 1], weight, water.sound_speed, water.state)
+    weight = ReducedPressure.weight(water, gravity)
+    found["deviation"] = hydrostatic_deviation(level - points[:, 1], weight, water.sound_speed, water.state)
     found["volume"] = volume
     return found
 
@@ -79,4 +79,4 @@ def uncompressed(start: np.ndarray, density: float, share: np.ndarray | float = 
     proportional to it. `share` (n,) is how much of each counts, as where tanks are of different length.
     """
     volume = share * start["volume"]
-    return float(density * volume.sum() / ((1.0 + start["excess"]) * volume).sum())
+    return float(density * volume.sum() / ((1.0 + start["deviation"]) * volume).sum())

@@ -15,7 +15,7 @@ class Linear:
     @staticmethod
     @ti.func
     def share(s):
-        """p/(ρ0 c0²) for the excess of density s."""
+        """p/(ρ0 c0²) for the density deviation s."""
         return s
 
     @staticmethod
@@ -24,8 +24,8 @@ class Linear:
         return np.asarray(s, dtype=float)
 
     @staticmethod
-    def excess(share: np.ndarray) -> np.ndarray:
-        """The excess of density s at which p/(ρ0 c0²) is `share`."""
+    def deviation(share: np.ndarray) -> np.ndarray:
+        """The density deviation s at which p/(ρ0 c0²) is `share`."""
         return np.asarray(share, dtype=float)
 
     @staticmethod

@@ -17,7 +17,7 @@ class Tait:
     @staticmethod
     @ti.func
     def share(s):
-        """p/(ρ0 c0²) for the excess of density s."""
+        """p/(ρ0 c0²) for the density deviation s."""
         ratio = 1.0 + s
         square = ratio * ratio
         return (square * square * square * ratio - 1.0) / GAMMA
@@ -28,8 +28,8 @@ class Tait:
         return (np.power(1.0 + s, GAMMA) - 1.0) / GAMMA
 
     @staticmethod
-    def excess(share: np.ndarray) -> np.ndarray:
-        """The excess of density s at which p/(ρ0 c0²) is `share`."""
+    def deviation(share: np.ndarray) -> np.ndarray:
+        """The density deviation s at which p/(ρ0 c0²) is `share`."""
         return np.expm1(np.log1p(GAMMA * np.asarray(share, dtype=float)) / GAMMA)
 
     @staticmethod

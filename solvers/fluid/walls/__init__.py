@@ -1,1 +1,1 @@
-"""Walls for water: layers of dummy particles behind them, their pressures, and gauges in them."""
+"""Walls for water: layers of wall particles behind them, their pressures, and gauges in them."""

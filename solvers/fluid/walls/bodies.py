@@ -1,19 +1,19 @@
-"""Bodies and plates that move in the water: where their dummies are, and what they do to it."""
+"""Bodies and plates that move in the water: where their wall particles are, and what they do to it."""
 
 import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Water
 from solvers.fluid.order import Order
-from solvers.fluid.state import UNUSED, Particles, Shares
-from solvers.fluid.walls.sight import Sight
+from solvers.fluid.state import UNUSED, Particles, WorkRanges
 from solvers.fluid.walls.solids import Solids
+from solvers.fluid.walls.visibility import Visibility
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.poses import AT_START, Poses
 from solvers.space.axes import dot
 from solvers.tank.pieces import COSINE, NUMBERS, RATE, SINE, V_Y, V_Z, Pieces, Y, Z
 
-USUAL = 4096  # dummies of bodies for which there is room at least
+USUAL = 4096  # wall particles of bodies for which there is room at least
 
 
 @ti.data_oriented
@@ -21,10 +21,10 @@ class Bodies:
     """The parts in the water of each world, rigid bodies whose motion in the tank is prescribed.
 
     At a pose (O, θ) in the tank's axes a point that is drawn at p is at O + R(θ) p; it moves at V + ω × R p and is
-    accelerated by A + ω' × R p − ω² R p, to which −2 Ω × v comes where the tank itself rolls at Ω. Dummies of bodies
-    follow those of the tank in memory.
+    accelerated by A + ω' × R p − ω² R p, to which −2 Ω × v comes where the tank itself rolls at Ω. Wall particles of
+    bodies follow those of the tank in memory.
 
-    Water that slides freely (`slip`) is accelerated by the part of it across the face before a dummy alone.
+    Water that slides freely (`slip`) is accelerated by the part of it across the face before a wall particle alone.
 
     `impulse` (units, parts; N s/m, N s) is what the water did to each part since it was last taken, `work` (units,
     parts; J/m) what the parts have done on the water by the last kick, `power` (units, parts; W/m) in it.
@@ -37,7 +37,7 @@ class Bodies:
         wet = [scene.fills[tank] > 0 for tank in self.tanks]  # others stand among grains
         self.solids, self.reach = Solids(parts, water, lanes, wet), water.reach
         self.rows = len(self.solids.places)
-        self.sight = Sight(arrays, parts, water, scene, wet)
+        self.visibility = Visibility(arrays, parts, water, scene, wet)
         self.fastest, self.moving = pieces.fastest, pieces.moving
         self.slips = water.slip
         if parts:
@@ -60,13 +60,13 @@ class Bodies:
         self.ends = own.holding("ends", self.solids.ends, "end", ti.i32)
         self.tank = own.holding("tank", np.array(self.tanks), "part", ti.i32)
 
-    def join(self, arrays: State, particles: Particles, order: Order, shares: Shares, poses: Poses, units) -> None:
-        """Take the `particles` among which the dummies are, and the tank's `poses`; count for these `units`."""
-        self.particles, self.order, self.shares, self.of_tank, self.units = particles, order, shares, poses, units
+    def join(self, arrays: State, particles: Particles, order: Order, ranges: WorkRanges, poses: Poses, units) -> None:
+        """Take the `particles` among which the wall particles are, and the tank's `poses`; count for these `units`."""
+        self.particles, self.order, self.ranges, self.of_tank, self.units = particles, order, ranges, poses, units
         if self.count:
-            first = np.array([particles.walls - self.rows])  # of the dry blocks
+            first = np.array([particles.walls - self.rows])  # of the wall blocks
             self.first = arrays.under("bodies").holding("first", first, "one", ti.i32)
-            self.sight.join(arrays, particles, padded(self.solids.owner, self.room), self.first, order)
+            self.visibility.join(arrays, particles, padded(self.solids.owner, self.room), self.first, order)
             own, each = arrays.under("bodies"), (units.axis, Axis("part", self.count))
             names = "impulse_y", "impulse_z", "impulse_turn", "work", "power"
             *self.impulse, self.work, self.power = own.reals(each, *names, kind=own.exact)
@@ -76,22 +76,22 @@ class Bodies:
     @ti.func
     def row(self, b):
         """The row of a block among the bodies' ones; below zero for any other block."""
-        return b % self.particles.stride - (self.particles.wet + self.first[0])
+        return b % self.particles.stride - (self.particles.fluid_blocks + self.first[0])
 
     @ti.func
     def note(self, w, t, dt):
         """Note how the parts of a world move in the step of dt (s) from time t (s)."""
         self.pieces.note(w, t, dt)
-        if ti.static(len(self.sight.plates) > 0):
-            self.sight.note(w, self.poses)
+        if ti.static(len(self.visibility.plates) > 0):
+            self.visibility.note(w, self.poses)
 
     @ti.func
     def place(self, u, part: ti.template()):
-        """Place a unit's dummies of moving parts where they are at a `part` of the step, with the velocity there."""
+        """Place a unit's wall particles of moving parts as they are at a `part` of the step, with their velocities."""
         p, at = self.particles, ti.static(NUMBERS * part)
         w = self.units.world(u)
-        first, end = self.shares.dry(u)
-        for b in range(ti.max(first, w * p.stride + p.wet + self.first[0]), end):
+        first, end = self.ranges.walls(u)
+        for b in range(ti.max(first, w * p.stride + p.fluid_blocks + self.first[0]), end):
             row = self.row(b)
             k = self.owner[row]
             cos, sin = self.poses[w, k, at + COSINE], self.poses[w, k, at + SINE]
@@ -112,7 +112,7 @@ class Bodies:
 
     @ti.func
     def turn(self, b, vector: ti.template(), part: ti.template()):
-        """Turn the vectors of a block of dummies, as their part is drawn, as it is at a `part` of the step."""
+        """Turn the vectors of a block of wall particles, as their part is drawn, as it is at a `part` of the step."""
         row = self.row(b)
         if row >= 0:
             w, k, at = b // self.particles.stride, self.owner[row], ti.static(NUMBERS * part)
@@ -123,7 +123,7 @@ class Bodies:
 
     @ti.func
     def hold_back(self, w, b, felt: ti.template()):
-        """Take the acceleration of its part in the tank (m/s²) from what a block of dummies feels, at the start."""
+        """Take the acceleration of its part in the tank (m/s²) from what its particles in a block feel at the start."""
         p, row = self.particles, self.row(b)
         zero = ti.cast(0.0, self.exact)
         a_y, a_z, up, rate, v_y, v_z, turn, o_y, o_z = zero, zero, zero, zero, zero, zero, zero, zero, zero
@@ -155,21 +155,21 @@ class Bodies:
 
     @ti.func
     def note_built(self, u):
-        """Note where a unit's dummies of parts are as its lists are built."""
+        """Note where a unit's wall particles of parts are as its lists are built."""
         p = self.particles
-        first, end = self.shares.dry(u)
-        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first[0]), end):
+        first, end = self.ranges.walls(u)
+        for b in range(ti.max(first, self.units.world(u) * p.stride + p.fluid_blocks + self.first[0]), end):
             for lane in range(p.lanes):
                 for a in ti.static(range(p.axes)):
                     p.built[a][b, lane] = p.place[a][b, lane]
 
     @ti.func
     def gone(self, u):
-        """The square (m²) of how far any of a unit's dummies of parts has gone since then."""
+        """The square (m²) of how far any of a unit's wall particles of parts has gone since then."""
         p = self.particles
-        first, end = self.shares.dry(u)
+        first, end = self.ranges.walls(u)
         farthest = ti.cast(0.0, p.real)
-        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first[0]), end):
+        for b in range(ti.max(first, self.units.world(u) * p.stride + p.fluid_blocks + self.first[0]), end):
             for lane in range(p.lanes):
                 if p.number[b, lane] != UNUSED:
                     way = [ti.cast(p.place[a][b, lane] - p.built[a][b, lane], p.real) for a in ti.static(range(p.axes))]
@@ -224,7 +224,7 @@ class Bodies:
             for field in (*self.impulse, *self.force, self.work, self.power, self.elapsed):
                 field.fill(0.0)
 
-    def given(self, behind: np.ndarray) -> np.ndarray:
+    def work_until(self, behind: np.ndarray) -> np.ndarray:
         """The work (W, parts) J/m of the parts on the water, by their motion in the tank, up to now.
 
         The last kick was `behind` (W,) s ago. Without its second half the account is late where a plate hits water: by
@@ -234,7 +234,7 @@ class Bodies:
             return np.zeros((self.worlds, 0))
         return self._of_worlds(self.work) + behind[:, None] * self._of_worlds(self.power)
 
-    def take(self, thickness: float, work: np.ndarray) -> dict[str, np.ndarray]:
+    def read_and_reset(self, thickness: float, work: np.ndarray) -> dict[str, np.ndarray]:
         """The mean loads on the parts (W, parts, 3) since they were last taken, which begin anew; and their `work`."""
         if not self.count:
             return {"part_force": np.zeros((self.worlds, 0, 3)), "part_work": np.zeros((self.worlds, 0))}

@@ -1,4 +1,4 @@
-"""Forces of the water on single edges of the tank, summed over the dummies behind them."""
+"""Forces of the water on single edges of the tank, summed over the wall particles behind them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,11 +7,11 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Water
-from solvers.fluid.lists import Medium
-from solvers.fluid.state import DRY
-from solvers.fluid.walls.behind import OF_NONE, Behind, covered
+from solvers.fluid.lists import FluidContext
+from solvers.fluid.state import WALLS
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.layers import SHARP, edge_of
+from solvers.fluid.walls.wall_layers import OF_NONE, WallLayers, covered
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
@@ -19,50 +19,51 @@ from solvers.tank.tank import Tank
 
 FINE = 8  # points over a smoothing length, by which integrals over faces and over water are taken
 TABLE = 33  # depths at which what a plane face shows is known
-ZONE = 0.75  # smoothing lengths from a corner within which dummies bear what few others lack
+ZONE = 0.75  # smoothing lengths from a corner within which wall particles bear what few others lack
 MOST = 3.0  # times as much more they may bear: behind a thin fin hardly any stand
-FEW = 1e-3  # of a kernel: dummies at a corner that see less have no weight to part
+FEW = 1e-3  # of a kernel: wall particles at a corner that see less have no weight to part
 
 
 @ti.data_oriented
 class Edges:
     """The force (y, z; N) on each edge in each world, as mean since it was last taken.
 
-    A dummy bears minus what it does to the water (`Forces`), the drag of water that sticks excepted, and belongs to the
-    nearest edge. Near a corner it bears the pressure on two faces, and gives part of it to the other edge (`parting`).
-    Together the edges bear the load on the tank; each without the pressure of the background. Along a face they bear
-    what makes the load of all exact: it is no friction.
+    A wall particle bears minus what it does to the water (`Forces`), the drag of water that sticks excepted, and
+    belongs to the nearest edge. Near a corner it bears the pressure on two faces, and gives part of it to the other
+    edge (`parting`). Together the edges bear the load on the tank; each without the pressure of the background. Along a
+    face they bear what makes the load of all exact: it is no friction.
 
-    Limits: where the outline turns by less than SHARP, or more than 180 deg less that, each dummy gives all to its
-    nearest edge. Where water at a corner does not move with the tank, parts of second order, ρ a h², are not parted.
+    Limits: where the outline turns by less than SHARP, or more than 180 deg less that, each wall particle gives all to
+    its nearest edge. Where water at a corner does not move with the tank, parts of second order, ρ a h², are not
+    parted.
     """
 
     def __init__(
         self,
         arrays: State,
-        medium: Medium,
+        context: FluidContext,
         walls: Extrapolation,
-        behind: Behind,
+        layers: WallLayers,
         slots: np.ndarray,
         tanks: Sequence[Tank],
         number: int,
         water: Water,
     ):
-        """The `edges` of one of the `tanks`; `slots` are where the points of `behind` are among the walls."""
+        """The `edges` of one of the `tanks`; `slots` are where the points of `layers` are among the walls."""
         tank = tanks[number]
-        self.particles, self.lists, self.constants = medium.particles, medium.lists, medium.constants
-        self.units, self.shares, self.walls = medium.units, medium.shares, walls
-        self.wanted, self.thickness, p = list(water.edges), tank.thickness, medium.particles
+        self.particles, self.lists, self.constants = context.particles, context.lists, context.constants
+        self.units, self.ranges, self.walls = context.units, context.ranges, walls
+        self.wanted, self.thickness, p = list(water.edges), tank.thickness, context.particles
         if water.edges:
             own = arrays.under("edges")
             each = Axis("block", p.worlds * p.stride), Axis("lane", p.lanes)
             self.force = own.wide(each, *named("force", p.axes), kept=False)
             self.weight = own.wide(each, *named("weight", p.axes), kept=False)
-            size, here = p.dry * p.lanes, (behind.tanks == number) & (behind.edges != OF_NONE)
+            size, here = p.wall_blocks * p.lanes, (layers.tanks == number) & (layers.edges != OF_NONE)
             owner, other = np.full(size, OF_NONE), np.full(size, OF_NONE)
             given, at = np.zeros((size, 2, 4)), slots[here]
-            parted = parting(behind.points[here], behind.volumes[here], tank, water, water.edges)
-            owner[at], other[at] = behind.edges[here], parted.other
+            parted = parting(layers.points[here], layers.volumes[here], tank, water, water.edges)
+            owner[at], other[at] = layers.edges[here], parted.other
             given[at] = np.concatenate([parted.of_force, parted.of_weight], axis=2)
             self.owner = own.holding("owner", owner, "slot", ti.i32)
             self.other = own.holding("other", other, "slot", ti.i32)
@@ -80,14 +81,14 @@ class Edges:
 
     @ti.func
     def bear(self, u, t, kick, dt):
-        """The forces on a unit's dummies."""
-        first, end = self.shares.dry(u)
+        """The forces on a unit's wall particles."""
+        first, end = self.ranges.walls(u)
         for b in range(first, end):
             self.bear_block(u, b, self.lists.facing.first[u, b - first], self.lists.facing.first[u, b - first + 1])
 
     @ti.func
     def bear_block(self, u, b, begin, end):
-        """The forces on a block of dummies from the entries `begin` to `end` of its list."""
+        """The forces on a block of wall particles from the entries `begin` to `end` of its list."""
         p, c, lists = self.particles, self.constants, self.lists
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
@@ -100,7 +101,7 @@ class Edges:
             apart = lists.apart(own, origin, j)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0)
-            weight, itself = c.kernel.slope(t), p.volume[jb, lane] * lists.sees(b, j, apart, AT_START)
+            weight, itself = c.kernel.slope(t), p.volume[jb, lane] * lists.visible(b, j, apart, AT_START)
             gas = p.gas_at(jb, lane)
             push = c.clipped(p.pressure[jb, lane], gas)
             if ti.static(c.pressed):
@@ -109,36 +110,36 @@ class Edges:
             spring = c.hardness(square, firm, gas)
             if ti.static(c.two):
                 along = (1.0 - gas) * pressure + gas * p.pressure[jb, lane] + push
-                spring *= 1.0 + gas * p.excess[jb, lane]
-                along += (gas * (1.0 + p.excess[jb, lane]) * c.get("air_density")) * dot(felt, apart)
+                spring *= 1.0 + gas * p.deviation[jb, lane]
+                along += (gas * (1.0 + p.deviation[jb, lane]) * c.get("air_density")) * dot(felt, apart)
             along = itself * (along * weight + spring)
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
-            if ti.static(self.walls.lean.acts):
+            if ti.static(self.walls.tangential.acts):
                 by_wall = pressure * (itself * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
-                    force[a] += by_wall * p.load(self.walls.lean.lean[a], b)
+                    force[a] += by_wall * p.load(self.walls.tangential.correction[a], b)
         for a in ti.static(range(p.axes)):
             p.store(self.force[a], b, (volume * c.get("slope")) * force[a])
             p.store(self.weight[a], b, self.seen(b, volume) * felt[a])
 
     @ti.func
     def seen(self, b, volume):
-        """The mass (kg/m) of what a block of dummies sees, V_w Σ ρ_f V_f W."""
+        """The mass (kg/m) of what a block of wall particles sees, V_w Σ ρ_f V_f W."""
         p, c = self.particles, self.constants
         density = c.get("density") * p.ones()
         if ti.static(c.two):
             density += (1.0 - p.load(p.share, b)) * (c.get("air_density") - c.get("density"))
-        return density * volume * p.load(p.span, b)
+        return density * volume * p.load(p.eigenvalue, b)
 
     @ti.func
     def add(self, w, t, kick, dt):
-        """Add the forces on a world's dummies to the impulses of their edges."""
+        """Add the forces on a world's wall particles to the impulses of their edges."""
         p, during = self.particles, ti.cast(dt, self.particles.exact)
-        for slot in range(p.sizes[DRY] * p.lanes):
+        for slot in range(p.sizes[WALLS] * p.lanes):
             edge = self.owner[slot]
             if edge != OF_NONE:
-                b, other = w * p.stride + p.wet + slot // p.lanes, self.other[slot]
+                b, other = w * p.stride + p.fluid_blocks + slot // p.lanes, self.other[slot]
                 lane = slot % p.lanes
                 push = [ti.cast(self.force[a][b, lane], p.exact) * during for a in ti.static(range(p.axes))]
                 weight = [ti.cast(self.weight[a][b, lane], p.exact) * during for a in ti.static(range(p.axes))]
@@ -152,7 +153,7 @@ class Edges:
                         self.impulse[a][w, other] = self.impulse[a][w, other] + given
         self.elapsed[w] = self.elapsed[w] + during
 
-    def take(self) -> dict[str, np.ndarray]:
+    def read_and_reset(self) -> dict[str, np.ndarray]:
         """The mean forces (W, edges, 2) N since they were last taken; they begin anew from here."""
         worlds = self.particles.worlds
         if not self.wanted:
@@ -165,8 +166,8 @@ class Edges:
 
 @dataclass(frozen=True, eq=False)
 class Parting:
-    """To which `other` edge (n,) dummies near corners give, and what: `of_force` (n, 2, 2) of the force F on them, and
-    `of_weight` (n, 2, 2) of the weight q = ρ V_w γ_w (g − a) of the water that they see, γ_w = Σ V_f W_fw."""
+    """To which `other` edge (n,) wall particles near corners give, and what: `of_force` (n, 2, 2) of the force F on
+    them, and `of_weight` (n, 2, 2) of the weight q = ρ V_w γ_w (g − a) of the water that they see, γ_w = Σ V_f W_fw."""
 
     other: np.ndarray
     of_force: np.ndarray
@@ -174,22 +175,23 @@ class Parting:
 
 
 def parting(points: np.ndarray, volumes: np.ndarray, tank: Tank, water: Water, edges: Sequence[int]) -> Parting:
-    """What dummies at `points` (n, 2) m, of `volumes` (n,) m², give to another edge at the corners of some `edges`.
+    """What walls' `points` (n, 2) m, of `volumes` (n,) m², give to another edge at the corners of some `edges`.
 
-    Where ∇p = ρ (g − a), as in water at rest, water pushes a dummy by
+    Where ∇p = ρ (g − a), as in water at rest, water pushes a wall particle by
 
         F = A_1 n_1 + A_2 n_2 − q,  A_k = V_w ∫ (p + p_w) W dS
 
     over the face k, n_k its outward normal (by the divergence theorem). A_1 and A_2 follow from F + q wherever n_1 and
-    n_2 differ in direction. Over all dummies behind the line of a straight face, A_k makes up ∫ p dS and (n_k·q), since
-    half of each kernel is there, and half of it the more squeezed. So an edge bears, of each dummy behind its line,
+    n_2 differ in direction. Over all wall particles behind the line of a straight face, A_k makes up ∫ p dS and
+    (n_k·q), since half of each kernel is there, and half of it the more squeezed. So an edge bears, of each wall
+    particle behind its line,
 
         N_k = b_w A_k − c_w n_k·q,
 
-    b_w = 1 but where few dummies are behind a line, as at a corner that points into the water: there they bear as much
-    more as the line lacks (`_more`). c_w = γ(d)/γ_w for dummies before whose foot there is a face, with γ(d) of a plane
-    face at their depth d, and 0 beyond its end. What is left of F is parted into vectors along both faces, square to
-    what each bears as pressure. So the parts of both make up F. Own derivation.
+    b_w = 1 but where few wall particles are behind a line, as at a corner that points into the water: there they bear
+    as much more as the line lacks (`_more`). c_w = γ(d)/γ_w for wall particles before whose foot there is a face, with
+    γ(d) of a plane face at their depth d, and 0 beyond its end. What is left of F is parted into vectors along both
+    faces, square to what each bears as pressure. So the parts of both make up F. Own derivation.
     """
     outline, (_, along, normal) = tank.outline, _frame(tank.outline)
     own, count = edge_of(points, outline), len(outline)
@@ -238,10 +240,10 @@ def _beside(points: np.ndarray, own: np.ndarray, tank: Tank, reach: float) -> np
 def _given(
     along: np.ndarray, normal: np.ndarray, bears: np.ndarray, weighs: np.ndarray, own: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Of dummies at a corner of two edges the matrices (n, 2, 2) of a `Parting`; `own` (n,) is 0 or 1, their edge.
+    """Of points at a corner of two edges the matrices (n, 2, 2) of a `Parting`; `own` (n,) is 0 or 1, their edge.
 
-    Of both edges unit vectors along and outwards (2, 2), and b_w and c_w of each dummy (n, 2), 0 where it is not behind
-    the edge's line.
+    Of both edges unit vectors along and outwards (2, 2), and b_w and c_w of each wall particle (n, 2), 0 where it is
+    not behind the edge's line.
     """
     by_force = bears[..., None] * np.linalg.inv(normal.T)  # N_k of F, and of q
     by_weight = by_force - weighs[..., None] * normal
@@ -258,10 +260,11 @@ def _given(
 
 
 def _more(foot: np.ndarray, depth: np.ndarray, volumes: np.ndarray, k: int, water: Water) -> np.ndarray:
-    """b_w − 1 (n,): by how much more dummies within ZONE of the end of an edge bear, to make up for what it lacks.
+    """b_w − 1 (n,): by how much more wall particles within ZONE of the end of an edge bear, to make up for what it
+    lacks.
 
-    Points of a face see half of a kernel in an unbounded wall. `foot` and `depth` (n, 2) m of dummies are along both
-    edges from the corner, and behind their lines; k is the edge.
+    Points of a face see half of a kernel in an unbounded wall. `foot` and `depth` (n, 2) m of wall particles are along
+    both edges from the corner, and behind their lines; k is the edge.
     """
     step = water.length / FINE
     ways = (np.arange(round(water.reach / step)) + 0.5) * step
@@ -274,13 +277,13 @@ def _more(foot: np.ndarray, depth: np.ndarray, volumes: np.ndarray, k: int, wate
 
 
 def _sees(off: np.ndarray, tank: Tank, corner: np.ndarray, water: Water) -> np.ndarray:
-    """γ_w (n,) of dummies `off` (n, 2) m a corner of a tank that is full of water."""
+    """γ_w (n,) of wall particles `off` (n, 2) m a corner of a tank that is full of water."""
     lattice = _lattice(water, 2.0 * water.reach)
     return covered(off, lattice, np.where(tank.holds(lattice + corner), (water.length / FINE) ** 2, 0.0), water)
 
 
 def _plane(depth: np.ndarray, water: Water) -> np.ndarray:
-    """γ (of any shape) of dummies at depths (m) behind a plane face; of others, 0."""
+    """γ (of any shape) of wall particles at depths (m) behind a plane face; of others, 0."""
     lattice = _lattice(water, water.reach)
     wet = lattice[lattice[:, 1] > 0.0]
     known = np.linspace(0.0, water.reach, TABLE)

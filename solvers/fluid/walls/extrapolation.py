@@ -1,15 +1,15 @@
-"""Pressures of the walls' dummy particles, extrapolated from the water before them."""
+"""Pressures of the wall particles, extrapolated from the water before them."""
 
 import taichi as ti
 
-from solvers.fluid.lists import Medium
-from solvers.fluid.walls.lean import Lean
-from solvers.fluid.walls.sliding import Sliding
+from solvers.fluid.lists import FluidContext
+from solvers.fluid.walls.slip_correction import SlipCorrection
+from solvers.fluid.walls.tangential_correction import TangentialCorrection
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
 
-SEEN = 1e-6  # of full coverage: a dummy that sees less water has no pressure
+SEEN = 1e-6  # of full coverage: a wall particle that sees less water has no pressure
 
 
 @ti.data_oriented
@@ -18,21 +18,21 @@ class Extrapolation:
 
     Weighted with volumes, which are nearly equal. Walls do not pull (p_w ≥ 0) unless the tank is full: a clip is needed
     where there is a free surface, which would stick to a wall. Where water sticks (no slip), its mean velocity ũ at the
-    dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23). Of two phases, water sees a pressure
+    wall particle gives the velocity 2 u_w − ũ for the viscous force (eq. 23). Of two phases, water sees a pressure
     that is extrapolated from water alone, and air its own, see `solvers.fluid.phases.interfaces`; gauges see both.
 
-    Limits: the mean is of first order; what its push does to the energy is given back by `Closing`. A wall that does
-    not pull may throw a particle off that lies on its face or behind it: of four films of three rows, with c0² of
-    20 000 g H and particles up to 0.35 Δx off their places at the start, three gained energy so, of four of five rows
-    one; up to 0.2 Δx off none of four.
+    Limits: the mean is of first order; what its push does to the energy is given back by `DivergenceCorrection`. A wall
+    that does not pull may throw a particle off that lies on its face or behind it: of four films of three rows, with
+    c0² of 20 000 g H and particles up to 0.35 Δx off their places at the start, three gained energy so, of four of five
+    rows one; up to 0.2 Δx off none of four.
     """
 
-    def __init__(self, arrays: State, medium: Medium, lean: Lean):
-        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
-        self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.bodies = medium.lists.bodies
-        self.sticks = medium.constants.viscous and not medium.constants.slip
-        self.sliding, self.lean = Sliding(arrays, medium), lean
+    def __init__(self, arrays: State, context: FluidContext, tangential: TangentialCorrection):
+        self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
+        self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
+        self.bodies = context.lists.bodies
+        self.sticks = context.constants.viscous and not context.constants.slip
+        self.slip, self.tangential = SlipCorrection(arrays, context), tangential
         if self.sticks:
             own = arrays.under("water")
             p = self.particles
@@ -40,15 +40,17 @@ class Extrapolation:
             self.mirrored = own.wide(each, *named("mirrored", p.axes), kept=False)
 
     @ti.func
-    def press(self, u, t, kick, dt):
-        """The pressures of a unit's dummies, and what share of each one's surroundings is water."""
-        first, end = self.shares.dry(u)
+    def extrapolate(self, u, t, kick, dt):
+        """The pressures of a unit's wall particles, and what share of each one's surroundings is water."""
+        first, end = self.ranges.walls(u)
         for b in range(first, end):
-            self.press_block(u, b, self.lists.facing.first[u, b - first], self.lists.facing.first[u, b - first + 1])
+            self.extrapolate_block(
+                u, b, self.lists.facing.first[u, b - first], self.lists.facing.first[u, b - first + 1]
+            )
 
     @ti.func
-    def press_block(self, u, b, begin, end):
-        """The pressures of a block of dummies from the entries `begin` to `end` of its list."""
+    def extrapolate_block(self, u, b, begin, end):
+        """The pressures of a block of wall particles from the entries `begin` to `end` of its list."""
         p, c = self.particles, self.constants
         w = self.units.world(u)
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
@@ -66,11 +68,11 @@ class Extrapolation:
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
             apart = self.lists.apart(own, origin, j)
             t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-            sees, volume = self.lists.sees(b, j, apart, AT_START), p.volume[jb, lane]
-            weight = sees * c.kernel.value(t)
-            if ti.static(self.lean.acts):
+            visible, volume = self.lists.visible(b, j, apart, AT_START), p.volume[jb, lane]
+            weight = visible * c.kernel.value(t)
+            if ti.static(self.tangential.acts):
                 for a in ti.static(range(p.axes)):
-                    steep[a] = steep[a] - (sees * (volume * c.kernel.slope(t))) * apart[a]
+                    steep[a] = steep[a] - (visible * (volume * c.kernel.slope(t))) * apart[a]
             massive = weight * p.mass[jb, lane]
             if ti.static(self.sticks):
                 for a in ti.static(range(p.axes)):
@@ -105,11 +107,11 @@ class Extrapolation:
             if ti.static(not c.full):
                 pressure = ti.max(pressure, 0.0)
             p.store(p.pressure, b, ti.select(wet > SEEN, pressure, p.zeros()))
-        p.store(p.span, b, wet)
-        if ti.static(self.lean.acts):
-            self.lean.note(b, seen, steep)
-        if ti.static(self.sliding.acts):
-            self.sliding.note(b, seen, flow, inward)
+        p.store(p.eigenvalue, b, wet)
+        if ti.static(self.tangential.acts):
+            self.tangential.note(b, seen, steep)
+        if ti.static(self.slip.acts):
+            self.slip.note(b, seen, flow, inward)
         if ti.static(self.sticks):
             for a in ti.static(range(p.axes)):
                 mean = moved[a] / ti.max(seen + airy, 1e-30)
@@ -117,7 +119,7 @@ class Extrapolation:
 
     @ti.func
     def felt(self, w, b):
-        """g − a_w (m/s²) of a block of dummies: gravity less the acceleration of the wall."""
+        """g − a_w (m/s²) of a block of wall particles: gravity less the acceleration of the wall."""
         p = self.particles
         felt = [p.ones() * ti.cast(self.poses.felt[2 + a][w], p.real) for a in ti.static(range(p.axes))]
         if ti.static(self.poses.rotating):
@@ -132,7 +134,7 @@ class Extrapolation:
 
     @ti.func
     def of_air(self, w, felt: ti.template()):
-        """`felt`, less gravity where pressures are over those of the air at rest (`Reduced`)."""
+        """`felt`, less gravity where pressures are over those of the air at rest (`ReducedPressure`)."""
         p = self.particles
         left = [felt[a] for a in ti.static(range(p.axes))]
         if ti.static(self.constants.modified):
@@ -142,10 +144,10 @@ class Extrapolation:
 
     @ti.func
     def carry(self, u):
-        """Give a unit's dummies the velocities (m/s) of their walls in the middle of the step."""
+        """Give a unit's wall particles the velocities (m/s) of their walls in the middle of the step."""
         p = self.particles
         w = self.units.world(u)
-        first, end = self.shares.dry(u)
+        first, end = self.ranges.walls(u)
         for b in range(first, end):
             zero = ti.cast(0.0, p.where)
             rate = ti.cast(self.poses.walls[2][w], p.real)

@@ -1,4 +1,4 @@
-"""Pressure gauges: probes on the walls, among the dummies but without volume, averaged and low-passed."""
+"""Pressure gauges: probes on the walls, among the wall particles but without volume, averaged and low-passed."""
 
 import numpy as np
 import taichi as ti
@@ -28,9 +28,9 @@ def probes(gauge: Gauge, outline: np.ndarray, spacing: float) -> np.ndarray:
 class Gauges:
     """What the pressure gauges of each world show (W, gauges), Pa, and the highest since it was last taken.
 
-    A probe's pressure is extrapolated to the wall as a dummy's is, less that of the background; where water covers less
-    than DRY of the `open` part of its kernel (of each probe, what dummies leave) it is zero. A gauge with the time
-    constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
+    A probe's pressure is extrapolated to the wall as a wall particle's is, less that of the background; where water
+    covers less than DRY of the `open` part of its kernel (of each probe, what wall particles leave) it is zero. A gauge
+    with the time constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class Gauges:
             total = ti.cast(0.0, p.exact)
             for k in range(self.ends[gauge], self.ends[gauge + 1]):
                 b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
-                if p.span[b, lane] > DRY * self.open[k]:
+                if p.eigenvalue[b, lane] > DRY * self.open[k]:
                     total += ti.cast(self.at(b, lane), p.exact)
                     if ti.static(self.constants.pressed):
                         total -= ti.cast(self.constants.get("background"), p.exact)
@@ -85,7 +85,7 @@ class Gauges:
 
     @ti.func
     def head(self, w, b, lane):
-        """What the pressure (Pa) of a probe is over that which is reduced, see `Reduced`."""
+        """What the pressure (Pa) of a probe is over that which is reduced, see `ReducedPressure`."""
         p, c = self.particles, self.constants
         pull = [self.poses.felt[a][w] for a in ti.static(range(p.axes))]
         place = [ti.cast(p.place[a][b, lane], p.exact) for a in ti.static(range(p.axes))]
@@ -104,7 +104,7 @@ class Gauges:
         else:
             return p.pressure[b, lane]
 
-    def take(self) -> dict[str, np.ndarray]:
+    def read_and_reset(self) -> dict[str, np.ndarray]:
         """What the gauges show, and their peaks (W, gauges), which begin anew from here."""
         shown, peak = self.shown.to_numpy()[:, : self.count], self.peak.to_numpy()[:, : self.count]
         self.peak.from_numpy(self.shown.to_numpy())

@@ -1,11 +1,11 @@
-"""Layers of dummy particles behind the walls of a polygon."""
+"""Layers of wall particles behind the walls of a polygon."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-NEARER = 0.25  # spacings by which a dummy may be nearer to a wall than its layer is
-FAR = 1.5  # kernels' reaches from a corner: there no dummy sees water that another wall ends
+NEARER = 0.25  # spacings by which a wall particle may be nearer to a wall than its layer is
+FAR = 1.5  # kernels' reaches from a corner: there no wall particle sees water that another wall ends
 SHARP = np.pi / 6.0  # by which a face turns away at an end: round a smoother one water slides
 FIRM = 1  # the layer that holds what has come through the face; the layer before it has gaps there
 
@@ -13,14 +13,14 @@ FIRM = 1  # the layer that holds what has come through the face; the layer befor
 def layers(
     outline: np.ndarray, spacing: float, rows: int, open_edges: Sequence[int] = ()
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Dummies in `rows` layers outside a counter-clockwise polygon (m, 2) m.
+    """Wall particles in `rows` layers outside a counter-clockwise polygon (m, 2) m.
 
     Their places (n, 2) m, volumes (n,) m², and how far (n,) m their layers lie behind the face.
 
     Layer k lies (k + 1/2) `spacing` outside, on the offset polygon with mitred corners, in equal steps of about a
-    spacing along each edge (after Adami, Hu & Adams 2012, for any angle). A dummy's volume is its share of its layer,
-    so that together they fill the layer's area. Behind a re-entrant corner, and in a thin wall, dummies that are nearer
-    to another edge than their layer is deep are left out. Edges of `open_edges` have none.
+    spacing along each edge (after Adami, Hu & Adams 2012, for any angle). A wall particle's volume is its share of its
+    layer, so that together they fill the layer's area. Behind a re-entrant corner, and in a thin wall, wall particles
+    that are nearer to another edge than their layer is deep are left out. Edges of `open_edges` have none.
     """
     corners = np.asarray(outline, dtype=float)
     edges = np.roll(corners, -1, axis=0) - corners
@@ -40,7 +40,7 @@ def layers(
 
 
 def firm(depths: np.ndarray, spacing: float) -> np.ndarray:
-    """Distances (n,) m within which dummies of layers at these depths (n,) m push water back; 0 where they do not."""
+    """Distances (n,) m within which layers at these depths (n,) m push water back; 0 where they do not."""
     return np.where(np.round(depths / spacing - 0.5) == FIRM, depths, 0.0)
 
 
@@ -77,11 +77,11 @@ def faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
     They are square to the shortest line from there to the point, at a corner as well.
     """
-    away = behind(points, corners)
+    away = offset_from(points, corners)
     return np.stack([-away[:, 1], away[:, 0]], axis=1) / np.linalg.norm(away, axis=1)[:, None]
 
 
-def behind(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+def offset_from(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """From where a polygon, or a line to and fro, (m, 2) m is nearest to points (n, 2) m, to these: (n, 2) m."""
     edges = np.roll(corners, -1, axis=0) - corners
     nearest = edge_of(points, corners)
@@ -92,12 +92,12 @@ def behind(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 def deep(points: np.ndarray, along: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """How far (n,) m the points are off the face `along` (n, 2) before them: its right is positive."""
-    away = behind(points, corners)
+    away = offset_from(points, corners)
     return away[:, 0] * along[:, 1] - away[:, 1] * along[:, 0]
 
 
 def straight(points: np.ndarray, along: np.ndarray, corners: np.ndarray, reach: float) -> np.ndarray:
-    """`along` (n, 2) of dummies at `points` (n, 2) m, zero near the `corners` (m, 2) m; `reach` (m) is the kernel's."""
+    """`along` (n, 2) of particles at `points` (n, 2) m, zero near the `corners` (m, 2) m; `reach` (m): the kernel's."""
     away = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1, initial=np.inf)
     return along * (away > FAR * reach)[:, None]
 

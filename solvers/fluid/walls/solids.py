@@ -1,4 +1,4 @@
-"""Dummies of the bodies and plates in the water, as they are drawn, in blocks of lanes."""
+"""Wall particles of the bodies and plates in the water, as they are drawn, in blocks of lanes."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,15 +7,15 @@ import numpy as np
 
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR, UNUSED
-from solvers.fluid.walls.layers import behind, deep, faces, firm, layers, sharp, straight
+from solvers.fluid.walls.layers import deep, faces, firm, layers, offset_from, sharp, straight
 from solvers.tank.parts import Part
 
 TOUCHES = 0.25  # spacings between a plate's end and a wall or a part from which on no water passes between them
-STRIP = 4.0  # spacings: height of the strips by which the dummies of a body are cut into blocks
+STRIP = 4.0  # spacings: height of the strips by which the wall particles of a body are cut into blocks
 
 
 def sheet(points: Sequence, spacing: float, rows: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Dummies on both sides of a plate between two points (m): places (n, 2) m, volumes (n,) m², depths (n,) m.
+    """Wall particles on both sides of a plate between two points (m): places (n, 2) m, volumes (n,) m², depths (n,) m.
 
     Each side has `rows` rows; those on one side are seen by the water on the other, which looks through the plate. So
     they reach beyond the plate's ends as well, where what is seen past an end and through the plate lies side by side.
@@ -71,7 +71,7 @@ def line_of(parts: Sequence[Part], members: Sequence[int]) -> np.ndarray:
 
 def nearest_of(parts: Sequence[Part], members: Sequence[int], points: np.ndarray) -> np.ndarray:
     """Which of plates that go on as one is nearest to each point (n, 2) m, (n,)."""
-    away = [np.linalg.norm(behind(points, np.asarray(parts[k].points, dtype=float)), axis=1) for k in members]
+    away = [np.linalg.norm(offset_from(points, np.asarray(parts[k].points, dtype=float)), axis=1) for k in members]
     return np.asarray(members)[np.argmin(away, axis=0)]
 
 
@@ -90,14 +90,15 @@ def counter_clockwise(points: Sequence) -> np.ndarray:
 
 
 class Solids:
-    """The dummies of the parts that are `wet`, in blocks of `lanes`, each block of one part.
+    """The wall particles of the parts that are `wet`, in blocks of `lanes`, each block of one part.
 
     `places` (blocks, lanes, 2) m as drawn, `volumes` (blocks, lanes) m², `firm` (blocks, lanes) m, the distances within
     which they push water back, `along` (blocks, lanes, 2) unit vectors along the faces before them, `straight` those
     away from corners and ends (see `layers.straight`), `sliding` those away from bodies' sharp corners, `deep` (blocks,
-    lanes) m how far they are off the faces, `numbers` (blocks, lanes), UNUSED in lanes without a dummy, of which the
-    first lane is none; `owner` (blocks,) is the part, `radius` (blocks,) m how far a block's dummies are from its first
-    one. `sides` are those of each part, see `sides_of`, `prolongs` (parts, parts) as of `prolonging`.
+    lanes) m how far they are off the faces, `numbers` (blocks, lanes), UNUSED in lanes without a wall particle, of
+    which the first lane is none; `owner` (blocks,) is the part, `radius` (blocks,) m how far a block's wall particles
+    are from its first one. `sides` are those of each part, see `sides_of`, `prolongs` (parts, parts) as of
+    `prolonging`.
     """
 
     def __init__(self, parts: Sequence[Part], water: Water, lanes: int, wet: Sequence[bool]):
@@ -123,7 +124,7 @@ class Solids:
         self.radius = np.where(used, away, 0.0).max(axis=1, initial=0.0)
 
     def _part(self, k: int, parts: Sequence[Part], water: Water, rows: int, lanes: int) -> tuple[np.ndarray, ...]:
-        """Of the dummies of part k, in blocks of lanes, what `Solids` has from `places` to `deep`."""
+        """Of the wall particles of part k, in blocks of lanes, what `Solids` has from `places` to `deep`."""
         part, spacing, drawn = parts[k], water.spacing, np.asarray(parts[k].points, dtype=float)
         if is_solid(part):
             corners = counter_clockwise(part.points)

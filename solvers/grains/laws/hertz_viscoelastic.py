@@ -28,8 +28,8 @@ class HertzViscoelastic(Hertz):
     time of the material (Brilliantov et al. 1996). Dry grains do not attract: the force is cut at zero, so a contact
     ends when the force vanishes, not when the overlap does (Schwager and Pöschel 2008).
 
-    Damper and end are taken as their means over a kick (`solvers.grains.laws.kick`): the damper's impulse is the
-    change of (2/3) γ_n ξ^(3/2), exactly. Verlet's predicted ξ̇ lags behind by Δt²/2 of the jerk, which in a collision is
+    Damper and end are taken as their means over a kick (`solvers.grains.laws.kick`): the damper's impulse is the change
+    of (2/3) γ_n ξ^(3/2), exactly. Verlet's predicted ξ̇ lags behind by Δt²/2 of the jerk, which in a collision is
     −(3/2) k √ξ ξ̇/m_eff; so the damper is multiplied by 1 − (3/4) Δt² k √ξ/m_eff.
 
     Limits: small overlaps, ξ ≪ R, of spheres that do not yield, and impacts slow beside waves in the grains (Johnson

@@ -40,8 +40,8 @@ LEAST_CLEARANCE = 0.02  # of the draught, under the keel
 class Hydrodynamics:
     """Coefficients over angular frequencies (n,) rad/s in sway, heave, roll.
 
-    `added_mass` and `damping` (n, 3, 3): the water's force on motion v is −A v̇ − B v (kg/m, kg, kg m; and those per s).
-    `excitation` (n, 3), complex, is the force and moment per metre of wave amplitude on the fixed hull, from the
+    `added_mass` and `damping` (n, 3, 3): the water's force on motion v is −A v̇ − B v (kg/m, kg, kg m; and those per
+    s). `excitation` (n, 3), complex, is the force and moment per metre of wave amplitude on the fixed hull, from the
     pressure of incident and scattered waves; `froude_krylov` is the incident waves' part; `haskind` is `excitation`
     from the radiated waves by Haskind's (1957) relation. `infinite_added_mass` (3, 3) is the limit for ω → ∞.
     """

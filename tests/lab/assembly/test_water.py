@@ -25,15 +25,17 @@ def wet(**water) -> Preset:
 
 def test_a_block_that_is_let_go_under_a_lid_has_no_pressure_and_a_column_its_weights():
     """The block falls freely; the column stands, and begins as hydrostatics has it."""
-    assert not drops_of(wet(region=BLOCK))["excess"].any()
+    assert not drops_of(wet(region=BLOCK))["deviation"].any()
     drops = drops_of(wet(region=COLUMN, sound_speed="40 m/s"))
-    np.testing.assert_allclose(40.0**2 * np.log1p(drops["excess"]), 10.0 * (0.3 - drops["position"][:, 1]), rtol=1e-9)
+    np.testing.assert_allclose(
+        40.0**2 * np.log1p(drops["deviation"]), 10.0 * (0.3 - drops["position"][:, 1]), rtol=1e-9
+    )
 
 
 def masses(fluid: Fluid) -> np.ndarray:
     """Masses (n,) kg/m of the particles of water of the first world."""
     start = fluid.particles[0]
-    return fluid.water.density * (1.0 + start["excess"]) * start["volume"]
+    return fluid.water.density * (1.0 + start["deviation"]) * start["volume"]
 
 
 @pytest.mark.parametrize("state", ["linear", "tait"])
@@ -43,7 +45,7 @@ def test_water_that_is_compressed_by_its_weight_has_its_level_and_its_mass(state
     drops, mass = made.particles[0], masses(made)
     assert mass.sum() == pytest.approx(1000.0 * 0.4 * 0.2, rel=1e-12)
     assert drops["volume"].sum() == pytest.approx(0.4 * 0.2, rel=1e-12) and drops["position"][:, 1].max() < 0.2
-    assert np.ptp(drops["excess"]) == pytest.approx(10.0 * 0.2 / 10.0**2, rel=0.1)
+    assert np.ptp(drops["deviation"]) == pytest.approx(10.0 * 0.2 / 10.0**2, rel=0.1)
     assert masses(fluid_of(wet(region=BLOCK))).sum() == pytest.approx(1000.0 * 0.2 * 0.1, rel=1e-12)
 
 

@@ -61,7 +61,7 @@ def test_air_that_becomes_stiff_begins_with_the_sound_of_the_water():
     assert (water.air.sound_speed, water.air.soft_speed, water.air.stiff_from) == (343.0, water.sound_speed, 0.75)
     assert water.softened.air.sound_speed == water.sound_speed
     assert water.background == airy().liquid.background < airy(**REAL).liquid.background
-    masses = [drops["volume"] @ ((1.0 + drops["excess"]) * drops["gas"]) for drops in map(drops_of, made(late))]
+    masses = [drops["volume"] @ ((1.0 + drops["deviation"]) * drops["gas"]) for drops in map(drops_of, made(late))]
     assert masses[0] == pytest.approx(masses[1], rel=1e-9) and masses[2] < (1.0 - 1e-3) * masses[1]
 
 
@@ -100,7 +100,7 @@ def test_air_fills_what_the_water_leaves():
     gas = drops["gas"][0]
     assert (np.diff(gas.astype(int)) >= 0).all()  # the water first
     assert (drops["position"][0, ~gas, 1] < 0.1).all() and (drops["position"][0, gas, 1] > 0.1).all()
-    assert (drops["excess"][0, ~gas] > 0.0).all() and (drops["excess"][0, gas] < 0.0).all()
+    assert (drops["deviation"][0, ~gas] > 0.0).all() and (drops["deviation"][0, gas] < 0.0).all()
 
 
 def test_air_lies_round_a_column():
@@ -116,7 +116,7 @@ def test_air_at_rest_is_in_balance_with_its_weight():
     s = hydrostatic_air(height, 9.81, sound)
     slope = np.gradient(sound**2 * state.pressure(s), height)[1:-1]
     np.testing.assert_allclose(slope, -9.81 * (1.0 + s)[1:-1], rtol=1e-4)
-    np.testing.assert_allclose(state.excess(state.pressure(s)), s, atol=1e-12)
+    np.testing.assert_allclose(state.deviation(state.pressure(s)), s, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -189,4 +189,4 @@ def test_pressures_over_those_of_a_heavy_fluid():
     )
     assert made.background < whole.background
     drops = build(reduced)[0].fluid.particles[0]
-    assert (drops["excess"][drops["gas"]] == 0.0).all() and drops["excess"].max() > 0.0
+    assert (drops["deviation"][drops["gas"]] == 0.0).all() and drops["deviation"].max() > 0.0

@@ -332,7 +332,7 @@ def test_water_leaves_room_for_bodies_and_stands_at_its_level_on_either_side_of_
     sound = wet(parts__gate=GATE, **given, **region).liquid.sound_speed
     level = np.where(drops["position"][:, 0] < 0.0, 0.1, 0.05)
     np.testing.assert_allclose(
-        np.log1p(drops["excess"]) * sound**2, 10.0 * (level - drops["position"][:, 1]), rtol=1e-9
+        np.log1p(drops["deviation"]) * sound**2, 10.0 * (level - drops["position"][:, 1]), rtol=1e-9
     )
 
 
@@ -345,7 +345,7 @@ def test_water_is_packed_beside_slanted_plates_and_cut_from_a_lattice_beside_oth
         assert (len(np.unique(np.round(drops["position"][:, 1], 6))) > 100) == packs
         assert drops["volume"].sum() == pytest.approx(0.9 * 0.1, rel=1e-9)
         np.testing.assert_allclose(
-            np.log1p(drops["excess"]) * sound**2, 10.0 * (0.1 - drops["position"][:, 1]), rtol=1e-9
+            np.log1p(drops["deviation"]) * sound**2, 10.0 * (0.1 - drops["position"][:, 1]), rtol=1e-9
         )
         lattice = wet(parts__baffle=plate, water__spacing="10 mm", water__start="lattice")
         assert len(np.unique(np.round(drops_of(lattice)["position"][:, 1], 6))) == 10

@@ -117,7 +117,7 @@ def test_a_recording_of_other_water_is_not_continued(swayed, tmp_path, monkeypat
         resume_run(tmp_path / "run", video=False, quiet=True)
 
 
-@pytest.mark.slow  # runs of grains do in `test_resume.py`, states of water in `tests/solvers/fluid/test_stiffening.py`
+@pytest.mark.slow  # runs of grains do in `test_resume.py`, states of water in `fluid/test_sound_switch.py`
 def test_a_run_that_was_killed_goes_on_with_the_same_bits(swayed):
     cut = swayed.with_name("cut")
     with open_recording(cut) as recording:

@@ -62,7 +62,7 @@ def test_a_gauge_that_sees_more_air_than_water_shows_the_air(pool):
     made = scene(background=40.0)
     wet, spacing = made.fluid.particles["gas"][0] < 0.5, made.fluid.water.spacing
     made.fluid.particles["position"][0, :, 1] -= 0.4 * spacing
-    made.fluid.particles["excess"][0, wet] = 0.01
+    made.fluid.particles["deviation"][0, wet] = 0.01
     run = again(pool, made)
     run.advance(2)
     shown, squeezed = run.observe()["gauge_pressure"][0], 0.01 * 1000.0 * made.fluid.water.sound_speed**2
@@ -95,7 +95,7 @@ def test_drops_fall_together_with_the_pool_below(pool):
     made = scene(background=40.0)
     drops, spacing = made.fluid.particles[0], made.fluid.water.spacing
     high = (np.abs(drops["position"][:, 0]) < 2.0 * spacing) & (np.abs(drops["position"][:, 1] - 0.25) < 0.5 * spacing)
-    drops["gas"][high], drops["excess"][high] = 0.0, 0.0
+    drops["gas"][high], drops["deviation"][high] = 0.0, 0.0
     made.matters = made.holding(
         replace(made.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None])
     ).matters
@@ -137,10 +137,10 @@ def test_a_gauge_at_the_surface_does_not_show_the_background(pool):
     assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
 
 
-def bubble(made: Scene, near: np.ndarray, excess: float) -> None:
-    """Let the particle nearest to a place (m) be one of air, of this excess of density."""
+def bubble(made: Scene, near: np.ndarray, deviation: float) -> None:
+    """Let the particle nearest to a place (m) be one of air, of this density deviation."""
     at, particles = np.linalg.norm(made.fluid.particles["position"][0] - near, axis=1).argmin(), made.fluid.particles
-    particles["gas"][0, at], particles["excess"][0, at] = True, excess
+    particles["gas"][0, at], particles["deviation"][0, at] = True, deviation
     made.matters = made.holding(
         replace(made.fluid, particles=particles[:, np.argsort(particles["gas"][0], kind="stable")])
     ).matters
@@ -154,10 +154,10 @@ def test_a_bubble_of_one_particle_does_not_stay_stretched(pool):
     before = run.observe()["water_diffusive"][0]
     run.advance(round(5.0 / run.water.constants.numbers["relief"] / run.dt))
     p = run.water.particles
-    (excess,) = (values[0] for values in p.read(p.excess))
+    (deviation,) = (values[0] for values in p.read(p.deviation))
     (alone,) = np.flatnonzero(gas & (z < DEPTH))
     least = 40.0 / (1.2 * run.scene.fluid.water.air.sound_speed**2)
-    assert excess[alone] == pytest.approx((1.0 - 1.4 * least) ** (1.0 / 1.4) - 1.0, abs=0.02)
+    assert deviation[alone] == pytest.approx((1.0 - 1.4 * least) ** (1.0 / 1.4) - 1.0, abs=0.02)
     assert run.observe()["water_diffusive"][0] > before
 
 
@@ -183,7 +183,7 @@ def stirred(step: float | None = None, **of_air) -> Scene:
     random, drops = np.random.default_rng(1), made.fluid.particles
     off_walls = (np.abs(drops["position"][0, :, 0]) < 0.08) & (drops["position"][0, :, 1] < 0.24)
     lone = np.flatnonzero(off_walls & (drops["gas"][0] > 0.5))[::7]
-    drops["gas"][0, lone], drops["excess"][0, lone] = 0.0, 0.0
+    drops["gas"][0, lone], drops["deviation"][0, lone] = 0.0, 0.0
     drops = drops[:, np.argsort(drops["gas"][0], kind="stable")]
     made.matters = made.holding(replace(made.fluid, particles=drops)).matters
     drops["position"] += 0.1 * made.fluid.water.spacing * random.uniform(-1.0, 1.0, drops["position"].shape)
@@ -215,7 +215,7 @@ def test_the_load_is_what_both_phases_lose(run):
 
 
 def test_energy_is_accounted_for(run):
-    """What both phases lose goes to viscosity, diffusion and dummies: pairs of water and air make and take none."""
+    """What both phases lose goes to viscosity, diffusion and walls: pairs of water and air make and take none."""
     start = run.observe()
     run.advance(400)
     end = run.observe()
@@ -283,7 +283,7 @@ def test_air_flows_out_through_a_vent():
     """From air half as dense again: its pressure follows dM/dt = −C_d A √(2 ρ p), p of M/V, to that outside."""
     made = scene(background=1.0, air={"vent": 2e-2})
     air, drops = made.fluid.water.air, made.fluid.particles
-    drops["excess"] = np.where(drops["gas"] > 0.5, 0.5, drops["excess"])
+    drops["deviation"] = np.where(drops["gas"] > 0.5, 0.5, drops["deviation"])
     run = Simulation(made, threads=1, arch="cpu")
     room, dense, stiff = WIDTH * (HEIGHT - DEPTH), 1.5, air.density * air.sound_speed**2
     run.observe()

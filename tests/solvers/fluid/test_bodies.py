@@ -29,7 +29,7 @@ def stirred(share: float) -> Scene:
     parts = square, Body(FLAP, motions=(Roll(0.1 * share, 1.0, centre=FLAP[0]),)), Body(BAFFLE)
     drops = still(WIDTH, HEIGHT, DEPTH, ROWS).fluid.particles
     beyond = drops["position"][0, :, 0] > FLAP[0][0]
-    drops["excess"][0, beyond] -= (DEPTH - LOW) / (100.0 * DEPTH)
+    drops["deviation"][0, beyond] -= (DEPTH - LOW) / (100.0 * DEPTH)
     free = clear_of(drops["position"][0], parts, SPACING) & ~(beyond & (drops["position"][0, :, 1] > LOW))
     return still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, drops=drops[:, free], alpha=0.02)
 
@@ -110,7 +110,7 @@ def test_bodies_in_still_water_bear_its_pressure(run):
 def test_a_plate_is_as_tight_as_a_wall():
     """Water on one side of a plate moves as in a tank that ends there, whatever stands on the other.
 
-    To 1e-4 of a spacing: dummies slide along the plate to its very end, but askew behind the corner of a tank.
+    To 1e-4 of a spacing: wall particles slide along the plate to its very end, but askew behind the corner of a tank.
     """
     plate = Body(((0.0, 0.0), (0.0, HEIGHT)))
     drops = still(WIDTH, HEIGHT, DEPTH, ROWS).fluid.particles
@@ -118,7 +118,7 @@ def test_a_plate_is_as_tight_as_a_wall():
     other = ~left & (drops["position"][0, :, 1] < low)
     whole, alone = drops[:, left | other], drops[:, left]
     beyond = whole[0, :, 0] > 0.0
-    whole["excess"][0, beyond] = GRAVITY * (low - whole[0, beyond, 1]) / (100.0 * GRAVITY * DEPTH)
+    whole["deviation"][0, beyond] = GRAVITY * (low - whole[0, beyond, 1]) / (100.0 * GRAVITY * DEPTH)
     half = box(0.5 * WIDTH, HEIGHT) - [0.25 * WIDTH, 0.0]
     scenes = {"parts": (plate,), "drops": whole}, {"outline": half, "drops": alone}
     runs = [Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, **changes), threads=1, arch="cpu") for changes in scenes]
@@ -201,7 +201,7 @@ def test_a_swaying_cylinder_has_the_added_mass_of_potential_theory():
 
 @pytest.mark.slow
 def test_a_plate_that_is_torn_up_along_itself_does_not_press_on_water_that_slides():
-    """Its ends' dummies have the pressure of the water before them, however it is accelerated: to 5 % of ρ a Δx.
+    """Its ends' wall particles have the pressure of the water before them, however it is accelerated: to 5 % of ρ a Δx.
 
     Both plates are where they would be at rest; one is accelerated along itself, as water that slides does not feel.
     """
@@ -210,7 +210,7 @@ def test_a_plate_that_is_torn_up_along_itself_does_not_press_on_water_that_slide
         torn = Body(((0.0, 0.0), (0.0, HEIGHT)), motions=(Heave(share * amplitude, frequency, 0.5 * np.pi),))
         run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, parts=(torn,)), threads=1, arch="cpu")
         run.advance(1)
-        first = run.water.particles.wet + run.water.bodies.first[0]
+        first = run.water.particles.fluid_blocks + run.water.bodies.first[0]
         pressures.append(run.water.particles.pressure.to_numpy()[first:])
         run.close()
     pull = amplitude * (2.0 * np.pi * frequency) ** 2

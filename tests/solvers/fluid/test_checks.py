@@ -82,8 +82,8 @@ def test_what_is_squeezed_is_named(gas, said):
     particles = {
         "place": PLACES,
         "speed": np.zeros(5),
-        "excess": np.array([0.0, 0.1, 30.0, 0.0, 0.0]),
-        "span": np.ones(5),
+        "deviation": np.array([0.0, 0.1, 30.0, 0.0, 0.0]),
+        "eigenvalue": np.ones(5),
     }
     with pytest.raises(BadState, match=said):
         refuse_state(0, {**particles, "gas": np.full(5, gas)}, 1.5, 17.0)
@@ -132,8 +132,14 @@ def test_energy_from_nothing_stops_the_run():
 
 def test_what_is_no_number_stops_the_run():
     """It is told where, by a neighbour that still has a place if it has none itself."""
-    fine = {"place": PLACES, "speed": np.zeros(5), "excess": np.zeros(5), "span": np.ones(5), "gas": np.zeros(5)}
-    for name in ("place", "speed", "excess"):
+    fine = {
+        "place": PLACES,
+        "speed": np.zeros(5),
+        "deviation": np.zeros(5),
+        "eigenvalue": np.ones(5),
+        "gas": np.zeros(5),
+    }
+    for name in ("place", "speed", "deviation"):
         broken = {key: values.copy() for key, values in fine.items()}
         broken[name][2] = np.nan
         said = refused(refuse_state, 1, broken, 1.5, 17.0)
@@ -146,8 +152,8 @@ def test_what_is_no_number_stops_the_run():
 def test_spray_and_the_surface_may_be_squeezed_more_than_water_within(whose, other):
     """The one is named that is farthest beyond what it may be, not the one that is squeezed most."""
     span, most = {"within": 1.0, "spray": 0.5 * INSIDE}, {"within": DENSEST, "spray": DENSEST_SPRAY}
-    excess = np.array([0.0, 0.0, 1.01 * most[whose], 0.0, 0.9 * most[other]])
+    deviation = np.array([0.0, 0.0, 1.01 * most[whose], 0.0, 0.9 * most[other]])
     spans = np.array([1.0, 1.0, span[whose], 1.0, span[other]])
     fine = {"place": PLACES, "speed": np.zeros(5), "gas": np.zeros(5)}
-    said = refused(refuse_state, 1, {**fine, "excess": excess, "span": spans}, 1.5, 17.0)
+    said = refused(refuse_state, 1, {**fine, "deviation": deviation, "eigenvalue": spans}, 1.5, 17.0)
     assert f"off by {101.0 * most[whose]:.3g} % at y = 0.4 m" in said

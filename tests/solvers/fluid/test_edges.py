@@ -1,4 +1,4 @@
-"""Forces on single edges: what dummies near a corner give to the other edge."""
+"""Forces on single edges: what wall particles near a corner give to the other edge."""
 
 import numpy as np
 import pytest
@@ -7,9 +7,9 @@ from solvers.fluid.given import Water
 from solvers.fluid.kernels.wendland_c2 import WendlandC2
 from solvers.fluid.start.packing import packed
 from solvers.fluid.start.rest import at_rest
-from solvers.fluid.walls.behind import OF_NONE
 from solvers.fluid.walls.edges import parting
 from solvers.fluid.walls.layers import edge_of, layers
+from solvers.fluid.walls.wall_layers import OF_NONE
 from solvers.simulation import Simulation
 from solvers.tank.tank import Tank
 from tests.oracles.water import GRAVITY, box, still
@@ -45,7 +45,7 @@ def faces_of(outline: np.ndarray) -> np.ndarray:
 def shared(
     points: np.ndarray, volumes: np.ndarray, force: np.ndarray, weight: np.ndarray, outline: np.ndarray, water: Water
 ) -> np.ndarray:
-    """The forces (m, 2) on the edges from those on dummies (n, 2), which see water of a weight (n, 2)."""
+    """The forces (m, 2) on the edges from those on wall particles (n, 2), which see water of a weight (n, 2)."""
     own, total = edge_of(points, outline), np.zeros_like(outline)
     found = parting(points, volumes, Tank(outline, 1.0), water, range(len(outline)))
     given = np.einsum("nab,nb->na", found.of_force, force) + np.einsum("nab,nb->na", found.of_weight, weight)
@@ -63,11 +63,11 @@ def hydrostatic(outline: np.ndarray, level: float) -> np.ndarray:
 
 @pytest.mark.parametrize("outline", [BOX, CHAMFERS, HOPPER, WEDGE, STEP, RIDGE])
 def test_under_an_even_pressure_each_edge_bears_it_on_its_length(outline):
-    """A dummy bears 2 p V Σ n ∫ W dS over all faces. The rule that counts all to the nearest edge misses 0.1 to 0.6 Δx
-    p everywhere, the one without `_more` 0.42 Δx p where a corner of 90 deg points inwards: 2 ∫ (½ − γ) ds, γ what the
-    solid quarter covers.
+    """A wall particle bears 2 p V Σ n ∫ W dS over all faces. The rule that counts all to the nearest edge misses 0.1 to
+    0.6 Δx p everywhere, the one without `_more` 0.42 Δx p where a corner of 90 deg points inwards: 2 ∫ (½ − γ) ds, γ
+    what the solid quarter covers.
     """
-    spacing, fine = 0.02, 2  # dummies are finer, so that only geometry is asked
+    spacing, fine = 0.02, 2  # wall particles are finer, so that only geometry is asked
     water = Water(spacing=spacing, sound_speed=10.0)
     points, volumes, _ = layers(outline, spacing / fine, 4 * fine)
     lengths, normals = frame(outline)
@@ -88,8 +88,8 @@ def test_under_an_even_pressure_each_edge_bears_it_on_its_length(outline):
 def test_packed_water_under_hydrostatic_pressure_loads_each_edge_by_its_head(outline, level):
     """At corners of 45 to 270 deg, to ρ g Δx², the weight of a particle, and UNEVEN of the load.
 
-    Without the weight of what dummies see, an edge beside a corner of 135 deg has 2 ρ g Δx² too much. The pressure of
-    a dummy is the hydrostatic one, so that no run is needed.
+    Without the weight of what wall particles see, an edge beside a corner of 135 deg has 2 ρ g Δx² too much. The
+    pressure of a wall particle is the hydrostatic one, so that no run is needed.
     """
     spacing = 0.01
     water = Water(spacing=spacing, sound_speed=100.0)

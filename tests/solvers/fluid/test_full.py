@@ -27,7 +27,7 @@ def run() -> Iterator[Simulation]:
     square = Body(tuple(map(tuple, corners(-1.2))), (2.4, 0.0), speed=SPEED, acceleration=2.0, closed=True)
     rows, sound = round(HEIGHT / SPACING), 40.0 * SPEED
     drops = lattice(WIDTH, HEIGHT, SPACING, sound)
-    drops["excess"] = 0.0
+    drops["deviation"] = 0.0
     low, high = corners(-1.2).min(axis=0), corners(-1.2).max(axis=0)
     beside = ((drops["position"][0] < low) | (drops["position"][0] > high)).any(axis=1)
     water = {"sound_speed": sound, "background": BACKGROUND, "shifting": "delta-plus", "speed": SPEED, "full": True}

@@ -77,7 +77,7 @@ def test_the_account_of_a_plate_that_hits_water_is_never_late():
 
 @pytest.mark.slow
 def test_plates_that_abut_push_water_as_one_plate_does():
-    """Dummies of both halves lie where those of the whole do. A joint that leaks has a jet of 2 m/s."""
+    """Wall particles of both halves lie where those of the whole do. A joint that leaks has a jet of 2 m/s."""
     half = 0.5 * DEPTH
     halves = (
         Part((ACROSS[0], (0.0, half)), move=(0.05, 0.0), **GOES),

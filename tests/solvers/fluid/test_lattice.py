@@ -5,7 +5,7 @@ import pytest
 
 from solvers.fluid.given import Water
 from solvers.fluid.start.lattice import from_edges, lattice
-from solvers.fluid.start.rest import at_rest, hydrostatic_excess
+from solvers.fluid.start.rest import at_rest, hydrostatic_deviation
 from solvers.tank.outline import area_below
 from solvers.tank.tank import Tank
 from tests.oracles.water import kernel
@@ -50,7 +50,7 @@ def test_a_region_is_filled_as_a_tank_of_its_own():
 def test_the_pressure_balances_the_weight_at_every_depth(state, exponent):
     """dp/dz = −ρ g of the equation of state, by differences."""
     gravity, sound, depth = 9.81, 5.0, np.linspace(0.0, 0.4, 4001)
-    s = hydrostatic_excess(depth, gravity, sound, state)
+    s = hydrostatic_deviation(depth, gravity, sound, state)
     pressure = sound**2 / exponent * ((1.0 + s) ** exponent - 1.0)  # over ρ0
     rise = np.gradient(pressure, depth)[1:-1]
     assert rise == pytest.approx(((1.0 + s) * gravity)[1:-1], rel=1e-6)
@@ -60,8 +60,8 @@ def test_the_pressure_balances_the_weight_at_every_depth(state, exponent):
 def test_the_water_weighs_what_its_floor_bears():
     water = Water(spacing=0.005, sound_speed=10.0)
     drops = at_rest(BOX, 0.2, water, 9.81)
-    mass = water.density * ((1.0 + drops["excess"]) * drops["volume"]).sum()
-    floor = water.density * 10.0**2 * hydrostatic_excess(0.2, 9.81, 10.0, "linear")
+    mass = water.density * ((1.0 + drops["deviation"]) * drops["volume"]).sum()
+    floor = water.density * 10.0**2 * hydrostatic_deviation(0.2, 9.81, 10.0, "linear")
     assert 9.81 * mass == pytest.approx(0.9 * floor, rel=1e-4)
     assert not drops["velocity"].any()
 

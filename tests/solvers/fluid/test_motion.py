@@ -115,7 +115,7 @@ def test_a_strained_drop_becomes_the_ellipse_of_theory(strained):
 def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory(strained):
     """Small strains under −Ω² r: the axes swing at √2 Ω (Monaghan & Rafiee 2013), to 2 %."""
     scene = drop(0.2, pull=PULL)
-    scene.fluid.particles["excess"] = (
+    scene.fluid.particles["deviation"] = (
         0.5 * 10.0**2 * (0.01 - (scene.fluid.particles["position"] ** 2).sum(axis=-1)) / 20.0**2
     )
     run, wide, time = again(strained, scene), [], []

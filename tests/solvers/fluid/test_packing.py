@@ -75,7 +75,7 @@ def widest_gap(points: np.ndarray, edges: list[np.ndarray]) -> float:
 
 
 def test_what_it_says_of_its_evenness_are_sums_over_all_particles():
-    """Γ and Δx Σ V ∇W within a box, by double sums without lists; near walls dummies are in them, too."""
+    """Γ and Δx Σ V ∇W within a box, by double sums without lists; near walls wall particles are in them, too."""
     spacing = 0.015
     found = packed(BOX, DEPTH, Water(spacing, 20.0))
     apart = found.points[:, None] - found.points

@@ -50,9 +50,9 @@ def test_momentum_is_kept_to_rounding_and_its_moment_to_the_error_of_sums(run):
     assert turned == pytest.approx(moment, rel=4e-3)
     p = run.water.particles
     shift = np.hypot(*(values[0] for values in p.read(*p.shift)))
-    span = p.read(p.span)[0][0]
+    eigenvalue = p.read(p.eigenvalue)[0][0]
     assert shift.max() > 1e-3  # m/s: they are shifted
-    assert not shift[span < 0.75].any()  # but at the surface
+    assert not shift[eigenvalue < 0.75].any()  # but at the surface
 
 
 def test_water_that_is_not_shifted_has_nothing_of_it(run):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.fluid.given import Fluid, Water
-from solvers.fluid.start.rest import at_rest, hydrostatic_excess
+from solvers.fluid.start.rest import at_rest, hydrostatic_deviation
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.given import scene_of
@@ -25,9 +25,9 @@ def ringing(**models) -> Scene:
     """Water at rest whose density has the mode on top, its particles as heavy as before plus the mode's share."""
     water = Water(DEPTH / ROWS, SOUND, **models)
     drops = at_rest(OUTLINE, DEPTH, water, G)[None].copy()
-    mass = (1.0 + drops["excess"]) * drops["volume"]
-    drops["excess"] += SHARE * shape(drops["position"][..., 1])
-    drops["volume"] = mass / (1.0 + drops["excess"])
+    mass = (1.0 + drops["deviation"]) * drops["volume"]
+    drops["deviation"] += SHARE * shape(drops["position"][..., 1])
+    drops["volume"] = mass / (1.0 + drops["deviation"])
     return scene_of(radius=np.zeros((1, 0)), outline=OUTLINE, fluid=Fluid(water, drops), gravity=G)
 
 
@@ -45,7 +45,7 @@ def swings(scene: Scene) -> tuple[float, float]:
                 run.advance(every)
                 state = run.snapshot()
                 below = np.maximum(DEPTH - state["water_position"][0, :, 1], 0.0)
-                still = 1000.0 * SOUND**2 * hydrostatic_excess(below, G, SOUND, "linear")
+                still = 1000.0 * SOUND**2 * hydrostatic_deviation(below, G, SOUND, "linear")
                 error = state["water_pressure"][0] - still
                 amplitudes.append((error * shape(state["water_position"][0, :, 1])).mean())
             found.append(float(np.std(amplitudes)))

@@ -8,7 +8,7 @@ import taichi as ti
 
 from solvers.fluid.checks import residual
 from solvers.fluid.given import Gauge, Level
-from solvers.fluid.surface.fullness import PACKED, RAMP
+from solvers.fluid.surface.void_indicator import PACKING, RAMP
 from solvers.machine.errors import BadState
 from solvers.machine.state import without_worlds
 from solvers.motion.harmonic import Sway
@@ -35,7 +35,7 @@ def disturbed(seed: int = 1, **changes):
 def held(run: Simulation) -> list[np.ndarray]:
     """Places, velocities, s, masses, accelerations and slopes of the first world's particles, by their numbers."""
     p = run.water.particles
-    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.excess, p.mass, *p.acceleration, *p.slope)
+    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.deviation, p.mass, *p.acceleration, *p.gradient)
     pairs = [np.stack(pair, axis=-1)[0] for pair in ((y, z), (v, w), rest[0:2], rest[2:4])]
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
@@ -55,7 +55,7 @@ def to_digits(run: Simulation, double: float, single: float) -> float:
 def upset(run: Simulation, number: int, fields, values) -> None:
     """Give a particle of a running simulation other values of some fields."""
     p = run.water.particles
-    block, lane = np.argwhere(p.number.to_numpy()[: p.wet] == number)[0]
+    block, lane = np.argwhere(p.number.to_numpy()[: p.fluid_blocks] == number)[0]
     for field, value in zip(fields, values, strict=True):
         field[block, lane] = value
 
@@ -83,11 +83,11 @@ def check_a_step(run: Simulation) -> np.ndarray:
     pressed = plain.wall_pressure(r, m, before) > 0.0
     u = u + dt * (push + plain.gravity)
     middle = r + 0.5 * dt * u
-    found, numbers, told = held(run), run.water.constants.numbers, run.water.forces.fullness
+    found, numbers, told = held(run), run.water.constants.numbers, run.water.forces.voids
     full, lacking = plain.fullness(r, m, before, numbers["plane"])
     s = before + dt * (plain.rate(middle, u, before, m, slope, pressed) + plain.keeping(full, lacking, before))
-    s = s / (1.0 + dt * numbers["relief"] * np.clip((PACKED - full) / RAMP, 0.0, 1.0))
-    np.testing.assert_allclose(run.water.particles.read(told.fullness)[0][0], full, atol=1e-9)
+    s = s / (1.0 + dt * numbers["relief"] * np.clip((PACKING - full) / RAMP, 0.0, 1.0))
+    np.testing.assert_allclose(run.water.particles.read(told.indicator)[0][0], full, atol=1e-9)
     np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
     np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
     np.testing.assert_allclose(found[2], s, atol=1e-9 * np.abs(s).max())
@@ -98,7 +98,7 @@ def check_a_step(run: Simulation) -> np.ndarray:
 def test_a_step_equals_double_sums(run):
     run.advance(7)
     full = check_a_step(run)
-    assert full.min() > PACKED  # at the surface and in corners, too
+    assert full.min() > PACKING  # at the surface and in corners, too
 
 
 def test_the_load_is_what_the_water_loses(run):
@@ -116,7 +116,7 @@ def test_the_load_is_what_the_water_loses(run):
 
 
 def test_the_loads_on_all_edges_are_the_load_on_the_tank(run):
-    """Summed over the dummies, the forces are those summed over the water; the floor bears most, the lid nothing."""
+    """Summed over the walls, the forces are those summed over the water; the floor bears most, the lid nothing."""
     run.observe()
     run.advance(20)
     rows = run.observe()
@@ -128,7 +128,7 @@ def test_the_loads_on_all_edges_are_the_load_on_the_tank(run):
 
 
 def test_energy_is_accounted_for(run):
-    """What is lost goes to viscosity, to diffusion and to the dummies of the walls; it only falls.
+    """What is lost goes to viscosity, to diffusion and to the wall particles; it only falls.
 
     The account has the errors of the step: on this rough state 1.6 %, with half the step 0.4 %, with a quarter 0.15 %.
     """
@@ -156,17 +156,17 @@ def test_water_with_voids_loses_its_pressure(run):
     """A lattice that is higher by a fifth bears none where it is not packed; its energy is accounted for."""
     scene = disturbed()
     scene.fluid.particles["position"][0, :, 1] *= 1.2
-    scene.fluid.particles["excess"][0] = 0.01
+    scene.fluid.particles["deviation"][0] = 0.01
     again(run, scene)
     start = run.observe()
     run.advance(1)
     full = check_a_step(run)
-    assert np.median(full) < PACKED - RAMP
+    assert np.median(full) < PACKING - RAMP
     run.advance(10)
     end = run.observe()
     p = run.water.particles
-    full, s = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.excess))
-    assert np.abs(s[full < PACKED - RAMP]).mean() < 0.2 * 0.01
+    full, s = (values[0] for values in p.read(run.water.forces.voids.indicator, p.deviation))
+    assert np.abs(s[full < PACKING - RAMP]).mean() < 0.2 * 0.01
     assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * start["water_elastic"][0]
 
 
@@ -179,8 +179,8 @@ def test_water_that_is_packed_too_close_takes_its_room_again(run):
     run.advance(round(2.5 / (run.water.constants.numbers["keeping"] * run.dt)))
     end = run.observe()
     p = run.water.particles
-    full, span = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.span))
-    assert full[span > 0.95].mean() == pytest.approx(1.0, abs=0.01)
+    full, eigenvalue = (values[0] for values in p.read(run.water.forces.voids.indicator, p.eigenvalue))
+    assert full[eigenvalue > 0.95].mean() == pytest.approx(1.0, abs=0.01)
     assert 1.015 < end["water_potential"] / start["water_potential"] < 1.035
     assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * abs(end["water_diffusive"][0])
 
@@ -189,12 +189,12 @@ def test_a_drop_alone_falls_without_pressure(run):
     """A pressed drop high above the water is relieved within a few h/c0 and falls as a stone does."""
     scene = disturbed()
     drop = scene.fluid.particles[0, -1]
-    drop["position"], drop["velocity"], drop["excess"] = (0.0, 0.5), 0.0, 0.02
+    drop["position"], drop["velocity"], drop["deviation"] = (0.0, 0.5), 0.0, 0.02
     again(run, scene)
     run.advance(20)
     places, speeds, s, *_ = held(run)
     time = 20 * run.dt
-    assert 0.0 <= s[-1] < 1e-4 * scene.fluid.particles["excess"][0, -1]
+    assert 0.0 <= s[-1] < 1e-4 * scene.fluid.particles["deviation"][0, -1]
     assert places[-1] == pytest.approx([0.0, 0.5 - 0.5 * GRAVITY * time**2], abs=GRAVITY * time * run.dt)
     assert speeds[-1] == pytest.approx([0.0, -GRAVITY * time], abs=GRAVITY * run.dt)
 
@@ -216,7 +216,7 @@ def test_water_at_rest_weighs_on_the_floor_and_its_gauges(run):
     """From hydrostatic rest: pressures, levels and the load stay; c0 = 10 √(gH) compresses the water by up to 1 %.
 
     The floor bears the water's weight, a wall ρ g H²/2 to a tenth of a spacing of the pressure at its foot: it has its
-    part of what the dummies beyond the corner bear, 0.35 spacings.
+    part of what the wall particles beyond the corner bear, 0.35 spacings.
     """
     again(run, still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD))
     run.observe()
@@ -260,7 +260,8 @@ def test_the_watch_stops_water_that_is_not_sound(run, trouble):
 
 
 def come_through(deep: float) -> Scene:
-    """Single particles, by so many spacings behind the face of a wall or the floor, between two dummies, or corners.
+    """Single particles, by so many spacings behind the face of a wall or the floor, between two wall particles, or
+    corners.
 
     The rest is far from walls.
     """
@@ -271,7 +272,7 @@ def come_through(deep: float) -> Scene:
     corners = np.array([[-0.5 * WIDTH - out, -out], [-0.5 * WIDTH - out, HEIGHT + out]])
     scene = still(WIDTH, HEIGHT, DEPTH, ROWS, gravity=0.0, **TOLD)
     drops = scene.fluid.particles[0]
-    drops["excess"], drops["position"][:, 1] = 0.0, drops["position"][:, 1] + 0.5 * (HEIGHT - DEPTH)
+    drops["deviation"], drops["position"][:, 1] = 0.0, drops["position"][:, 1] + 0.5 * (HEIGHT - DEPTH)
     drops["position"][:, 0] *= 0.6
     drops["position"][:9] = np.concatenate([right, floor, corners])
     return scene

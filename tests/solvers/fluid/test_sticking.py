@@ -32,10 +32,10 @@ def stirred() -> Scene:
     [pytest.param(rolled, 0.005, id="tank"), pytest.param(stirred, 0.02, id="part")],
 )
 def test_all_that_walls_work_is_in_the_water_or_lost(make, close):
-    """Energy changes by the work of the walls: a drag is booked where the water is, not at the dummy.
+    """Energy changes by the work of the walls: a drag is booked where the water is, not at the wall particle.
 
-    Booked at the dummy, it missed 5 % of the tank's work, at any step, and 9 % of the part's. Of the part's work 1.3 %
-    is left, which falls with the square of the step.
+    Booked at the wall particle, it missed 5 % of the tank's work, at any step, and 9 % of the part's. Of the part's
+    work 1.3 % is left, which falls with the square of the step.
     """
     run = Simulation(make(), threads=1, arch="cpu")
     run.advance(20)

@@ -22,7 +22,7 @@ from lab.preset.sections.water.tanks import Pool, Tanked
 from solvers.fluid import given
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
-from solvers.fluid.phases.reduced import Reduced
+from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.walls.layers import edge_of
 from solvers.tank.outline import moments
 
@@ -70,7 +70,7 @@ def liquid(preset: Wet) -> given.Water:
         alpha=scheme.alpha if water.alpha is None else water.alpha,
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
-        apart=(distance_of_walls(preset) or 0.0) if water.between_walls else 0.0,
+        gap=(distance_of_walls(preset) or 0.0) if water.between_walls else 0.0,
         full=water.full,
         background=water.background_pressure or 0.0,
         shifting=water.shifting,
@@ -89,7 +89,7 @@ def liquid(preset: Wet) -> given.Water:
     )
     if made.air is not None and water.background_pressure is None:
         over = max(z for _, z in preset.tank.corners) - bounds(preset)[1]
-        hanging = Reduced.hanging(made, preset.run.gravity, over)
+        hanging = ReducedPressure.hanging(made, preset.run.gravity, over)
         made = replace(made, background=background(made.softened.air, made, hanging))
     return made
 

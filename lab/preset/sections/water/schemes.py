@@ -1,6 +1,6 @@
 """Named schemes of water: the models and numbers that published studies used, as far as the solver has them.
 
-All of them run with the lab's own walls (dummy particles after Adami, Hu & Adams 2012), time step and precision. What a
+All of them run with the lab's own walls (wall particles after Adami, Hu & Adams 2012), time step and precision. What a
 source did otherwise and the solver does not offer:
 
 - as_P: walls of dynamic particles with a gap, shifting after Lind (2012), a symplectic step of second order with 0.2

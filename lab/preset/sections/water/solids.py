@@ -14,7 +14,9 @@ from lab.preset.units import show
 from solvers.fluid.walls.solids import counter_clockwise
 from solvers.tank.tank import Tank as Outline
 
-THINNEST = 4.0  # smoothing lengths: the least thickness at which no dummy of a body is seen from both of its sides
+THINNEST = (
+    4.0  # smoothing lengths: the least thickness at which no wall particle of a body is seen from both of its sides
+)
 LOOKS = 41  # places at which a motion is looked at
 ALONG = 33  # points at which a part's sides are looked at
 NEAR = 1e-3  # of the tank's larger side: how far a part may stand in a wall

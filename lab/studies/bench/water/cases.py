@@ -7,7 +7,7 @@ import numpy as np
 from lab.preset.outline import rectangle
 from lab.studies.bench.peers.pool import Pool
 from solvers.fluid.given import Fluid, Water, particles
-from solvers.fluid.start.rest import hydrostatic_excess
+from solvers.fluid.start.rest import hydrostatic_deviation
 from solvers.scene import Scene
 
 GRAVITY, DENSITY = 9.81, 1000.0
@@ -41,7 +41,7 @@ class Case:
 
     def pool(self, seconds: float, every: float, threads: int = 1) -> Pool:
         """The same for a peer: its pressures are those of the linear equation of state."""
-        s = self.drops["excess"]
+        s = self.drops["deviation"]
         return Pool(
             position=self.drops["position"],
             velocity=self.drops["velocity"],
@@ -96,5 +96,5 @@ def _block(width: float, depth: float, rows: int, mach: float, left: float, stat
     grid = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
     drops = particles(len(grid))
     drops["position"], drops["volume"] = grid, spacing**2
-    drops["excess"] = hydrostatic_excess(depth - grid[:, 1], GRAVITY, sound, state)
+    drops["deviation"] = hydrostatic_deviation(depth - grid[:, 1], GRAVITY, sound, state)
     return drops

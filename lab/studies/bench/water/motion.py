@@ -23,8 +23,8 @@ def _moved(column: Case) -> dict[str, np.ndarray]:
     frame = worker.frames([LATER * np.sqrt(HIGH / GRAVITY)])[0]
     worker.close()
     drops = column.drops.copy()
-    mass = (1.0 + drops["excess"]) * drops["volume"]
+    mass = (1.0 + drops["deviation"]) * drops["volume"]
     drops["position"], drops["velocity"] = frame.position, frame.velocity
-    drops["excess"] = frame.pressure / (DENSITY * column.sound_speed**2)
-    drops["volume"] = mass / (1.0 + drops["excess"])
+    drops["deviation"] = frame.pressure / (DENSITY * column.sound_speed**2)
+    drops["volume"] = mass / (1.0 + drops["deviation"])
     return {"drops": drops}

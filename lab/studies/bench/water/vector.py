@@ -24,9 +24,9 @@ COUNTS = {
     # Δy, Δz 2, their squares' sum 3, root, t 3, V t³ 3
     "where they are and the kernel's slope, `Forces` and `Continuity` each": (2 * 11, 2),
     # Pressures 2, push 4, nearing 2, its product 3, π 2, loss 2, drag 4, V ∇W 2, its sum 2, gradient 5, matrix 6
-    "`Forces.push_block`": (34, 1),
-    # Nearing 2, opening 5, excess 2, gradients 2 + 4, sum 2
-    "`Continuity.expand_block`": (17, 0),
+    "`Forces.pass_block`": (34, 1),
+    # Nearing 2, opening 5, deviation 2, gradients 2 + 4, sum 2
+    "`Continuity.pass_block`": (17, 0),
 }
 OPERATIONS = sum(simple + slow for simple, slow in COUNTS.values())
 ROWS, FEW, TURNS, WALL, PASS = 100, 20, 5, 1.0, 0.06

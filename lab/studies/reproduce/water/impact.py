@@ -110,9 +110,9 @@ def over_shallow(name: str) -> Callable[[Outcome, float], float]:
 
 
 def made_at_walls(one: Outcome, about: float) -> float:
-    """What the walls' dummies gave the water in the cycle about an impact, over the work of the walls themselves.
+    """What the wall particles gave the water in the cycle about an impact, over the work of the walls themselves.
 
-    Dummies hold no energy for good, so that what they give is made by the scheme.
+    Wall particles hold no energy for good, so that what they give is made by the scheme.
     """
     time, held, work = (one.recording.series[key] for key in ("time", "water_wall_energy", "water_work"))
     ends = about + 0.5 * PERIOD * np.array([-1.0, 1.0])

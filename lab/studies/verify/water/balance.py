@@ -148,8 +148,8 @@ def walls(fast: bool) -> Found:
         run.advance(1)  # the first kick is half a step long
         plain, first = EarthWater(run.scene, over_earth), over_earth(run.time)
         place, velocity, mass = kept(run)
-        (excess,) = (values[0] for values in run.water.particles.read(run.water.particles.excess))
-        r, u, s = first.places(place), turned(velocity, first.angle), excess
+        (deviation,) = (values[0] for values in run.water.particles.read(run.water.particles.deviation))
+        r, u, s = first.places(place), turned(velocity, first.angle), deviation
         for _ in range(round((A_WHILE if fast else LONGER) / run.dt)):
             r, u, s = plain.step(r, u, s, mass, run.time, run.dt)
             run.advance(1)
@@ -159,8 +159,8 @@ def walls(fast: bool) -> Found:
         on_walls = int((plain.wall_pressure(r, mass, s) > 0.0).sum())
     line = Line.off("places", "moving walls in the earth frame, plain arrays", error, 1e-9, EXACT, "m")
     note = f"""{len(r)} particles of the tank {1e3 * side:.0f} mm wide, by double sums over all of them and {on_walls}
-    dummies that bear pressure, for {run.time:.2f} s. Over the earth the water goes up to {1e3 * moved:.0f} mm, in its
-    tank up to {1e3 * gone:.0f} mm."""
+    wall particles that bear pressure, for {run.time:.2f} s. Over the earth the water goes up to {1e3 * moved:.0f} mm,
+    in its tank up to {1e3 * gone:.0f} mm."""
     return Found([line], notes=[note])
 
 

@@ -84,7 +84,7 @@ SOUND = 10.0 * np.sqrt(G * JUMP.after)
 @dataclass(frozen=True)
 class Bore:
     """Of a bore at times (T,) s, per metre of width: its place (m), the force on the wall (N) and the energies (J) lost
-    in it and, in the whole tank, taken by viscosity, by diffusion and by the walls' dummies; of the water behind it
+    in it and, in the whole tank, taken by viscosity, by diffusion and by the wall particles; of the water behind it
     volumes (m²), kinetic energies (J) and lengths (m), these zero where too little is behind."""
 
     time: np.ndarray
@@ -133,7 +133,7 @@ def run_up(rows: int) -> Bore:
     start = resting(water, box(length, LID * DEPTH), DEPTH, lambda place: np.tile([-JUMP.stream, 0.0], (len(place), 1)))
     start.precision = "mixed"
     particles = start.fluid.particles[0]
-    volume = (1.0 + particles["excess"]) * particles["volume"]
+    volume = (1.0 + particles["deviation"]) * particles["volume"]
     within = particles["position"][:, 0] + 0.5 * length < length - wave * DURATION - 0.5 * MARGIN * DEPTH
     found, energy = [], []
     with simulated(start) as run:
@@ -191,7 +191,7 @@ def bores(_: bool) -> Found:
 
 HEAD = (
     *("layers before", "h2", "c", "force on the wall", "energy lost"),
-    *("by viscosity, whole tank", "by diffusion, whole tank", "by dummies of walls, whole tank"),
+    *("by viscosity, whole tank", "by diffusion, whole tank", "by wall particles, whole tank"),
     *("kinetic energy behind", "lost too late, ρ g h1³"),
 )
 CAPTION = "Energy that the bore has lost, in ρ g h1³, with so many layers of particles in the stream ahead of it."

@@ -7,7 +7,7 @@ import numpy as np
 from lab.studies.case import Case, Found, Line
 from lab.studies.verify.water.scenes import G, box, chamfered, looks, order_line, resting, simulated
 from solvers.fluid.given import Gauge, Level, Water
-from solvers.fluid.start.rest import hydrostatic_excess
+from solvers.fluid.start.rest import hydrostatic_deviation
 from solvers.tank.outline import area_below
 
 SECTION = "Water: rest"
@@ -82,7 +82,7 @@ def rms(value: np.ndarray, axis: int | None = None) -> np.ndarray:
 
 def exact(below: np.ndarray | float, water: Water) -> np.ndarray:
     """Pressure (Pa) at depths (m) of the weakly compressible water: ρ0 c0² (exp(g d/c0²) − 1), ρ0 g d to 0.5 %."""
-    return water.density * water.sound_speed**2 * hydrostatic_excess(below, G, water.sound_speed, water.state)
+    return water.density * water.sound_speed**2 * hydrostatic_deviation(below, G, water.sound_speed, water.state)
 
 
 def check(name: str, fast: bool) -> Found:

@@ -11,7 +11,7 @@ from lab.preset.outline import rectangle
 from lab.studies.case import Line
 from solvers.fluid.given import Fluid, Water, particles
 from solvers.fluid.phases.adiabatic import background
-from solvers.fluid.phases.reduced import Reduced
+from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
@@ -49,7 +49,7 @@ def filled(place: np.ndarray, water: Water, velocity: Field, pressure: Field | N
     drops["position"][0], drops["volume"] = place, water.spacing**2
     set_going(drops, velocity)
     if pressure is not None:
-        drops["excess"][0] = pressure(place) / (water.density * water.sound_speed**2)
+        drops["deviation"][0] = pressure(place) / (water.density * water.sound_speed**2)
     return drops
 
 
@@ -162,4 +162,4 @@ def of_both(water: Water, outline: np.ndarray, depth: float) -> Scene:
 
 def bearing(water: Water, over: float = 0.0) -> Water:
     """A water with the background pressure that presets have, under air of a height (m)."""
-    return replace(water, background=background(water.air, water, Reduced.hanging(water, G, over)))
+    return replace(water, background=background(water.air, water, ReducedPressure.hanging(water, G, over)))

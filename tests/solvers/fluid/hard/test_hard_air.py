@@ -73,9 +73,9 @@ def test_a_bubble_of_four_spacings_rises():
     scene = filled()
     drops = scene.fluid.particles[0]
     inside = (np.hypot(drops["position"][:, 0], drops["position"][:, 1] - 0.08) < 2.0 * SPACING) & (drops["gas"] < 0.5)
-    pressure = scene.fluid.water.density * SOUND**2 * drops["excess"][inside]
+    pressure = scene.fluid.water.density * SOUND**2 * drops["deviation"][inside]
     share = pressure / (scene.fluid.water.air.density * SOUND**2)
-    drops["gas"][inside], drops["excess"][inside] = 1.0, Adiabatic.excess(share)
+    drops["gas"][inside], drops["deviation"][inside] = 1.0, Adiabatic.deviation(share)
     drops["velocity"][inside, 1], drops["volume"][inside] = 0.0, SPACING**2
     scene = scene.holding(replace(scene.fluid, particles=drops[np.argsort(drops["gas"], kind="stable")][None]))
     bubble = slice(int((scene.fluid.particles["gas"][0] < 0.5).sum()), None)

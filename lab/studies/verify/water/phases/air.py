@@ -59,7 +59,7 @@ def rested(rows: int, duration: float) -> tuple[float, float, float]:
 def air_mass(run: Simulation) -> float:
     """Mass (kg) of the air in a slab of one metre."""
     drops, air = run.scene.fluid.particles[0], run.scene.fluid.water.air
-    return float((air.density * (1.0 + drops["excess"]) * drops["volume"] * drops["gas"]).sum())
+    return float((air.density * (1.0 + drops["deviation"]) * drops["volume"] * drops["gas"]).sum())
 
 
 def still(fast: bool) -> Found:

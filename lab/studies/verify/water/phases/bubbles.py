@@ -52,8 +52,8 @@ def pressed(drops: np.ndarray, water: Water, pressure: np.ndarray) -> None:
     """Give drops (1, n) the densities at which they have pressures (n,) Pa."""
     air, gas = water.air, drops["gas"][0] > 0.5
     of_water = pressure / (water.density * water.sound_speed**2)
-    of_air = Adiabatic.excess(pressure / (air.density * air.sound_speed**2))
-    drops["excess"][0] = np.where(gas, of_air, of_water)
+    of_air = Adiabatic.deviation(pressure / (air.density * air.sound_speed**2))
+    drops["deviation"][0] = np.where(gas, of_air, of_water)
 
 
 def drop_at_rest(rows: int) -> float:

@@ -1,21 +1,21 @@
-"""Whether particles fill the room between them, and the pressure of those that do not."""
+"""The void indicator: whether particles fill the room between them, and the pressure of those that do not."""
 
 import numpy as np
 import taichi as ti
 
 from solvers.fluid.phases.dispersed import Dispersed
 from solvers.fluid.state import SPRAY, Particles
-from solvers.fluid.surface.consistency import Consistency
+from solvers.fluid.surface.reinitialisation import Reinitialisation
 from solvers.machine.state import Axis, State
 from solvers.space.axes import dot
 
-PACKED = 0.93  # fullness from which on water bears pressure
-RAMP = 0.05  # of fullness, over which the relief grows to all of c0/h
+PACKING = 0.93  # packing threshold: F from which on water bears pressure
+RAMP = 0.05  # of F, over which the relief grows to all of c0/h
 
 
 @ti.data_oriented
-class Fullness:
-    """F = ½ Σ V (−W'/r) r² + b |Σ V ∇W|, over water and dummies: 1 where water is packed, at its surface too.
+class VoidIndicator:
+    """F = ½ Σ V (−W'/r) r² + b |Σ V ∇W|, over water and wall particles: 1 where water is packed, at its surface too.
 
     The first sum is half the trace of the matrix of Randles & Libersky (1996); it is 1 within packed water and ½ at a
     plane surface. What a plane cuts off is told by the second sum, and b, a length, is such that both are 1
@@ -24,14 +24,14 @@ class Fullness:
 
     Density that follows from the motion of neighbours keeps what a particle lacked when it parted: drops that come
     together would count as pressed as soon as they are within 2 h, and stay that far apart. Water with voids bears
-    neither pressure nor suction, as cavitated water does not (Bleich & Sandler 1970): where F < PACKED, p is lost at
-    the rate c0/h, at which a void within reach relieves it (own derivation), all of it from F = PACKED − RAMP down, in
+    neither pressure nor suction, as cavitated water does not (Bleich & Sandler 1970): where F < PACKING, p is lost at
+    the rate c0/h, at which a void within reach relieves it (own derivation), all of it from F = PACKING − RAMP down, in
     between in proportion. So it falls together until it is packed. The step is implicit, the energy counts as
     diffused.
     Spray (λ < SPRAY) bears no suction at all. Beside air it is the air's pressure that such water gets, see
     `solvers.fluid.phases.dispersed`.
 
-    Limits: water that was broken is packed to within 1 − PACKED. A flat gap between two surfaces is not seen: both are
+    Limits: water that was broken is packed to within 1 − PACKING. A flat gap between two surfaces is not seen: both are
     plane. Corners and tips, sharper than some 6 Δx, count as voids, though p is nearly zero there anyway. Not in
     full tanks, which have no voids, nor beside air where its surface has tension or it coheres.
 
@@ -43,24 +43,24 @@ class Fullness:
         self.dispersed = Dispersed(arrays, particles, constants)
         self.acts = self.dispersed.acts or not (constants.full or constants.two)
         self.sums = 1 + particles.axes + (3 if self.dispersed.acts else 0)
-        self.consistency = Consistency(arrays, particles, constants, self.acts)
+        self.reinitialisation = Reinitialisation(arrays, particles, constants, self.acts)
         if self.acts:
             each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
-            (self.fullness,) = arrays.under("water").wide(each, "fullness", kept=False)
+            (self.indicator,) = arrays.under("water").wide(each, "void_indicator", kept=False)
 
     @staticmethod
     def numbers(kernel, length: float, sound: float) -> dict[str, float]:
-        """The constants of fullness, for a smoothing length (m) and a speed of sound (m/s)."""
+        """The constants of F, for a smoothing length (m) and a speed of sound (m/s)."""
         return {
             "relief": sound / length,
             "plane": plane(kernel) * length,
-            "packed": PACKED,
+            "packing": PACKING,
             "ramp": 1.0 / RAMP,
         }
 
     @ti.func
     def note(self, b, trace, sums: ti.template()):
-        """Store the fullness of a block, from its sums without the slope's factor.
+        """Store F of a block, from its sums without the slope's factor.
 
         `trace` is Σ V (−W'/r) r² over the own phase; `sums` are Σ V (−W'/r)(r_j − r_i) over it and walls, of water, the
         walls' trace, and of the other phase Σ V W, Σ V p W and its trace.
@@ -70,23 +70,23 @@ class Fullness:
         lacking = c.get("plane") * ti.sqrt(dot(lean, lean))
         both = trace + sums[p.axes]
         own = both - gas * sums[p.axes] if ti.static(c.two) else both
-        fullness = c.get("slope") * (0.5 * own + lacking)
-        p.store(self.fullness, b, fullness)
+        indicator = c.get("slope") * (0.5 * own + lacking)
+        p.store(self.indicator, b, indicator)
         if ti.static(self.dispersed.acts):
             self.dispersed.note(b, sums[p.axes + 1], sums[p.axes + 2])
             whole = (0.5 * c.get("slope")) * (both + sums[p.axes + 3])
-            fullness, lacking = (1.0 - gas) * fullness + gas * whole, (1.0 - gas) * lacking
-        if ti.static(self.consistency.acts):
-            self.consistency.note(b, fullness, c.get("slope") * lacking, gas)
+            indicator, lacking = (1.0 - gas) * indicator + gas * whole, (1.0 - gas) * lacking
+        if ti.static(self.reinitialisation.acts):
+            self.reinitialisation.note(b, indicator, c.get("slope") * lacking, gas)
 
     @ti.func
     def stepped(self, b, s, rate, rate_of_walls, step):
-        """The excesses of density of a block after a `step` (s) with these rates (1/s)."""
+        """The density deviations of a block after a `step` (s) with these rates (1/s)."""
         p = self.particles
-        spray = p.load(p.span, b) + p.gases(b) < SPRAY  # air is never spray
+        spray = p.load(p.eigenvalue, b) + p.gases(b) < SPRAY  # air is never spray
         after = s + step * rate
-        if ti.static(self.consistency.acts):
-            after += step * self.consistency.rate(b, s)
+        if ti.static(self.reinitialisation.acts):
+            after += step * self.reinitialisation.rate(b, s)
         # Walls come last: spray that parts is still pushed off a wall that it nears.
         after = self.floored(spray, self.floored(spray, after) + step * rate_of_walls)
         if ti.static(self.acts):
@@ -102,13 +102,13 @@ class Fullness:
 
     @ti.func
     def loose(self, b):
-        """How far a block is broken: 0 where packed, 1 from PACKED − RAMP down; of air beside ALONE."""
+        """How far a block is broken: 0 where packed, 1 from PACKING − RAMP down; of air beside ALONE."""
         p, c = self.particles, self.constants
-        return ti.min(ti.max((c.of("packed", p.gases(b)) - p.load(self.fullness, b)) * c.get("ramp"), 0.0), 1.0)
+        return ti.min(ti.max((c.of("packing", p.gases(b)) - p.load(self.indicator, b)) * c.get("ramp"), 0.0), 1.0)
 
     @ti.func
     def floored(self, spray, s):
-        """The excess of density, of spray at least that at which it bears no pressure; a full tank has no spray.
+        """The density deviation, of spray at least that at which it bears no pressure; a full tank has no spray.
 
         With the background's pressure p_b that is below the density at rest. There the elastic energy ∫ (p + p_b)/ρ² dρ
         is least, so that what is floored gains none (own derivation); at ρ0 each step would give it p_b times the

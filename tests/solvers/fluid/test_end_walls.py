@@ -8,18 +8,18 @@ import pytest
 from lab.base.errors import LabError
 from lab.preset.find import load
 from solvers.fluid.given import particles
-from solvers.fluid.walls.between import RATES, SHARES, Between
+from solvers.fluid.walls.end_walls import RATES, SHARES, EndWallFriction
 from solvers.motion.harmonic import Roll, Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.water import again, still
 
-NU, APART = 1e-3, 0.05  # m²/s, m
-RATE = 12.0 * NU / APART**2  # 4.8 1/s
-NARROW = {"viscosity": "laminar", "kinematic": NU, "slip": False, "apart": APART}
+NU, GAP = 1e-3, 0.05  # m²/s, m
+RATE = 12.0 * NU / GAP**2  # 4.8 1/s
+NARROW = {"viscosity": "laminar", "kinematic": NU, "slip": False, "gap": GAP}
 
 
-SLOWEST = np.pi**2 * NU / APART**2
+SLOWEST = np.pi**2 * NU / GAP**2
 
 
 def drop(velocity, spacing=0.01, **how):
@@ -34,7 +34,7 @@ def drop(velocity, spacing=0.01, **how):
 
 def exact(omega: np.ndarray, nu: float = NU) -> np.ndarray:
     """u of the mean over the walls' velocity, tanh z/z with z = (b/2) √(iω/ν), of a liquid that only they move."""
-    z = 0.5 * APART * np.sqrt(1j * omega / nu)
+    z = 0.5 * GAP * np.sqrt(1j * omega / nu)
     return np.tanh(z) / z
 
 
@@ -43,10 +43,10 @@ def test_eight_modes_have_the_drag_of_stokes_flow():
     shares, rates = np.array(SHARES), SLOWEST * np.array(RATES)
     assert shares.sum() == pytest.approx(1.0) and (shares / rates).sum() == pytest.approx(1.0 / RATE)
     for bound, reach in ((2e-4, 1.0), (5e-3, 100.0), (0.055, 1e5)):
-        omega = NU / APART**2 * np.geomspace(1e-2, reach, 40)
+        omega = NU / GAP**2 * np.geomspace(1e-2, reach, 40)
         drag = 1.0 / np.sum(shares / (1j * omega[:, None] + rates), axis=1) - 1j * omega
         np.testing.assert_array_less(np.abs(drag / (1j * omega / (1.0 - exact(omega)) - 1j * omega) - 1.0), bound)
-    slow = 1e-3 * NU / APART**2
+    slow = 1e-3 * NU / GAP**2
     drag = 1.0 / np.sum(shares / (1j * slow + rates)) - 1j * slow
     assert drag.real == pytest.approx(RATE, rel=1e-6) and drag.imag == pytest.approx(0.2 * slow, rel=1e-4)
 
@@ -90,7 +90,7 @@ def test_a_free_drop_is_stopped_as_flow_between_walls_is():
     """All of it alike, so that nothing else acts; the walls have its momentum, and viscosity its energy."""
     velocity = np.array([0.6, -0.2])
     scene, grid = drop(velocity)
-    assert Between.rate(scene.fluid.water) == pytest.approx(RATE)
+    assert EndWallFriction.rate(scene.fluid.water) == pytest.approx(RATE)
     odd = np.arange(1, 400, 2)[:, None]
     share, rate = 8.0 / (np.pi * odd) ** 2, odd**2 * SLOWEST
     run = Simulation(scene, threads=1, arch="cpu")
@@ -145,8 +145,8 @@ def test_walls_that_cannot_be_are_told(changes, words):
 
 def test_walls_are_a_tanks_length_apart_where_it_has_one():
     water = load("sloshing/roll-damper-glycerine", {"axle.length": "0.5 m"}).resolved.liquid
-    assert water.apart == 0.5
-    assert load("sloshing/roll-damper-glycerine").resolved.liquid.apart == 0.062
+    assert water.gap == 0.5
+    assert load("sloshing/roll-damper-glycerine").resolved.liquid.gap == 0.062
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What stands behind the walls of tanks for their water: dummies, and the probes of gauges among them."""
+"""The set-up of wall layers: the wall particles behind the walls of tanks, and the probes of gauges among them."""
 
 from collections.abc import Sequence
 
@@ -14,13 +14,13 @@ from solvers.tank.tank import Tank
 OF_NONE = -1  # the edge of probes, which are no part of a wall
 
 
-class Behind:
-    """Dummies and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
+class WallLayers:
+    """Wall particles and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
 
     `along` (n, 2) are unit vectors along the faces before them (`faces`), zero of probes; `straight` (n, 2) are those
-    away from all corners, `sliding` (n, 2) those away from `sharp` corners, which point into the water, else zero.
-    An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
-    numbers, `open` what dummies leave of their kernels. Gauges are in the first tank that has water. `fills` are the
+    away from all corners, `sliding` (n, 2) those away from `sharp` corners, which point into the water, else zero. An
+    edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their numbers,
+    `open` what wall particles leave of their kernels. Gauges are in the first tank that has water. `fills` are the
     numbers of particles in each tank; none stands behind a dry one.
     """
 
@@ -64,7 +64,7 @@ class Behind:
 
 
 def _round(water: Water, tank: Tank) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Dummies round a tank, see `layers`, without those beyond the ends of periodic space."""
+    """Wall particles round a tank, see `layers`, without those beyond the ends of periodic space."""
     rows = int(np.ceil(water.reach / water.spacing - 1e-9))
     points, volumes, depths = layers(tank.outline, water.spacing, rows, tank.open_edges)
     for axis, (low, high) in enumerate(zip(tank.outline.min(axis=0), tank.outline.max(axis=0), strict=True)):
@@ -75,7 +75,7 @@ def _round(water: Water, tank: Tank) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def covered(places: np.ndarray, points: np.ndarray, volumes: np.ndarray, water: Water) -> np.ndarray:
-    """What share of the kernel at each place (k, 2) m dummies (n, 2) m cover, (k,)."""
+    """What share of the kernel at each place (k, 2) m wall particles (n, 2) m cover, (k,)."""
     away = np.linalg.norm(places[:, None] - points, axis=2)
     kernel = KERNELS[water.kernel]
     near = np.where(away < water.reach, kernel.printed(np.minimum(away, water.reach), water.length), 0.0)

@@ -1,4 +1,4 @@
-"""Friction of the walls before and behind: water in a narrow tank that is computed in the plane."""
+"""End-wall friction: the walls before and behind the water of a narrow tank that is computed in the plane."""
 
 from math import pi
 
@@ -29,8 +29,8 @@ SHARES, RATES = zip(*_modes(), strict=True)
 
 
 @ti.data_oriented
-class Between:
-    """du/dt = … − Σ_n w_n λ_n u_n: the drag of laminar flow between two walls, a distance b apart, on its mean u.
+class EndWallFriction:
+    """du/dt = … − Σ_n w_n λ_n u_n: the drag of laminar flow between two walls, a gap b apart, on its mean u.
 
     Stokes' flow ∂v/∂t = ν ∂²v/∂x² + a under any force a per mass, v = 0 on both walls, is a sum of modes that forget at
     rates λ_n: du_n/dt = a − λ_n u_n, and its mean is u = Σ w_n u_n (Carslaw & Jaeger 1959, § 3.3). Particles carry
@@ -49,23 +49,23 @@ class Between:
     @staticmethod
     def rate(water: Water) -> float:
         """12 ν/b² (1/s); 0 where no such walls are."""
-        return PROFILE * water.kinematic / water.apart**2 if water.apart else 0.0
+        return PROFILE * water.kinematic / water.gap**2 if water.gap else 0.0
 
     @ti.func
-    def hold_back(self, b, past: ti.template(), kick, drag: ti.template()):
+    def drag(self, b, past: ti.template(), kick, found: ti.template()):
         """Take the modes of a block to its velocities `past` the walls; their mean drag (m/s²) in the coming kick.
 
         In each kick a is one number, which follows from how u has changed. Modes are stepped by 1/(1 + λΔt + (λΔt)²/2),
         of second order and without overshoot; the next kick is taken to have the same a.
         """
         p = self.particles
-        slowest = self.constants.get("rub") * (pi**2 / PROFILE)
+        slowest = self.constants.get("end_walls") * (pi**2 / PROFILE)
         for axis in ti.static(range(p.axes)):
             kept, gained = p.zeros(), ti.cast(0.0, p.real)
             for n in ti.static(range(MODES)):
                 x = ti.static(RATES[n]) * slowest * kick
                 less = 1.0 / (1.0 + x + 0.5 * x * x)
-                kept += (ti.static(SHARES[n]) * less) * p.load(p.layers[n][axis], b)
+                kept += (ti.static(SHARES[n]) * less) * p.load(p.end_wall_modes[n][axis], b)
                 gained += ti.static(SHARES[n]) * less * (1.0 + 0.5 * x) * kick
             force = (past[axis] - kept) / gained
             for n in ti.static(range(MODES)):
@@ -73,6 +73,6 @@ class Between:
                 x = rate * kick
                 less = 1.0 / (1.0 + x + 0.5 * x * x)
                 during = less * (1.0 + 0.5 * x)
-                mode = less * p.load(p.layers[n][axis], b) + (during * kick) * force
-                p.store(p.layers[n][axis], b, mode)
-                drag[axis] += ti.static(SHARES[n]) * ((rate * during) * mode + (less * 0.5 * x * (1.0 + x)) * force)
+                mode = less * p.load(p.end_wall_modes[n][axis], b) + (during * kick) * force
+                p.store(p.end_wall_modes[n][axis], b, mode)
+                found[axis] += ti.static(SHARES[n]) * ((rate * during) * mode + (less * 0.5 * x * (1.0 + x)) * force)

@@ -34,8 +34,8 @@ def stirred() -> Scene:
     made, random = scene(), np.random.default_rng(3)
     drops = made.fluid.particles
     drops["velocity"] = 0.1 * random.uniform(-1.0, 1.0, drops["position"].shape)
-    drops["excess"] += np.where(drops["gas"] > 0.5, random.uniform(-0.1, 0.1, drops.shape), 0.0)
-    drops["excess"][0, -3:] = -0.5, 0.9, 3.0
+    drops["deviation"] += np.where(drops["gas"] > 0.5, random.uniform(-0.1, 0.1, drops.shape), 0.0)
+    drops["deviation"][0, -3:] = -0.5, 0.9, 3.0
     return made
 
 
@@ -59,10 +59,10 @@ def test_pressure_mass_momentum_and_energy_go_on(made):
     run = again(made, stirred())
     run.observe()
     rows, state, mass = run.observe(), run.snapshot(), mass_of(run)
-    soft = run.water.particles.read(run.water.particles.excess)[0]
+    soft = run.water.particles.read(run.water.particles.deviation)[0]
     run.water.change()
     after, later = run.observe(), run.snapshot()
-    stiff = run.water.particles.read(run.water.particles.excess)[0]
+    stiff = run.water.particles.read(run.water.particles.deviation)[0]
     gas = run.scene.fluid.particles["gas"][0] > 0.5
     scale = np.abs(state["air_pressure"]).max()
     np.testing.assert_allclose(later["air_pressure"], state["air_pressure"], atol=1e-12 * scale)

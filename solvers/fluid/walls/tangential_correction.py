@@ -1,14 +1,14 @@
-"""What the dummies of a wall would push water along its face, taken off their push."""
+"""Tangential correction: what wall particles would push water along a face is taken off their push."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.lists import Medium
-from solvers.fluid.walls.behind import Behind
+from solvers.fluid.lists import FluidContext
 from solvers.fluid.walls.layers import FAR, deep
 from solvers.fluid.walls.solids import sides_of
+from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.state import Axis, State, padded
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
@@ -17,41 +17,44 @@ from solvers.tank.tank import Tank
 
 
 @ti.data_oriented
-class Lean:
-    """∇W_iw of a dummy's own pressure p_w becomes ∇W_iw − t (t·Σ_k V_k ∇W_kw) W_iw/Σ_f V_f W_fw, t along the face.
+class TangentialCorrection:
+    """∇W_iw of the own pressure p_w becomes ∇W_iw − t (t·Σ_k V_k ∇W_kw) W_iw/Σ_f V_f W_fw, t along the face.
 
-    Summed over the water i, no dummy then pushes along its face, as a wall without friction, or the mirror image of the
-    water, does not. Else those near the surface do, who see water on one side alone: they draw the line where it meets
-    the wall down, by ρ g h² in all. The power of this push is the adjoint of the sliding in `Closing` (own derivation;
-    for adjoint pairs see Bonet & Lok 1999, sec. 3). Without it what slides is taken from waves: a standing wave of 20
-    layers decays by 4.5 % faster.
+    Summed over the water i, no wall particle then pushes along its face, as a wall without friction, or the mirror
+    image of the water, does not. Else those near the surface do, who see water on one side alone: they draw the line
+    where it meets the wall down, by ρ g h² in all. The power of this push is the adjoint of the sliding in
+    `DivergenceCorrection` (own derivation; for adjoint pairs see Bonet & Lok 1999, sec. 3). Without it what slides is
+    taken from waves: a standing wave of 20 layers decays by 4.5 % faster.
 
     Limits: only away from corners, ends and other walls (FAR). There the water leans because another wall ends it, and
     the pushes of both walls bear each other; with part of them taken off, the pressure of 40 layers at rest between
-    chamfers was off by 2 % of ρ g H, and a piston's waves were lower by a tenth. So a surface within 1.5 reaches of
-    a corner, a wall of short edges, water beside air and full tanks, which have no `Closing`, are as they were.
+    chamfers was off by 2 % of ρ g H, and a piston's waves were lower by a tenth. So a surface within 1.5 reaches of a
+    corner, a wall of short edges, water beside air and full tanks, which have no `DivergenceCorrection`, are as they
+    were.
     """
 
-    def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray, tanks: Sequence[Tank]):
-        """`slots` are where the points of `behind` are among the lanes of the walls."""
-        self.particles, self.constants = p, c = medium.particles, medium.constants
-        self.bodies, self.order = (bodies := medium.lists.bodies), medium.lists.order
-        self.acts = p.dry > 0 and not (c.full or c.two)
+    def __init__(
+        self, arrays: State, context: FluidContext, layers: WallLayers, slots: np.ndarray, tanks: Sequence[Tank]
+    ):
+        """`slots` are where the points of `layers` are among the lanes of the walls."""
+        self.particles, self.constants = p, c = context.particles, context.constants
+        self.bodies, self.order = (bodies := context.lists.bodies), context.lists.order
+        self.acts = p.wall_blocks > 0 and not (c.full or c.two)
         if self.acts:
-            own, each = arrays.under("water.lean"), (Axis("block", p.worlds * p.stride), Axis("lane", p.lanes))
-            rows = self._rows(behind.straight, bodies.solids.straight, slots)
+            own, each = arrays.under("water.tangential"), (Axis("block", p.worlds * p.stride), Axis("lane", p.lanes))
+            rows = self._rows(layers.straight, bodies.solids.straight, slots)
             self.along = [
-                own.holding(name, padded(rows[..., a], p.dry), "row lane")
+                own.holding(name, padded(rows[..., a], p.wall_blocks), "row lane")
                 for a, name in enumerate(named("along", p.axes))
             ]
-            self.lean = own.wide(each, *named("lean", p.axes), kept=False)
+            self.correction = own.wide(each, *named("correction", p.axes), kept=False)
             if bodies.count:
-                off = np.zeros(len(behind.points))
+                off = np.zeros(len(layers.points))
                 for number, tank in enumerate(tanks):
-                    mine = behind.tanks == number
-                    off[mine] = deep(behind.points[mine], behind.along[mine], tank.outline)
+                    mine = layers.tanks == number
+                    off[mine] = deep(layers.points[mine], layers.along[mine], tank.outline)
                 off = self._rows(off, bodies.solids.deep, slots)
-                self.deep = own.holding("deep", padded(off, p.dry), "row lane")
+                self.deep = own.holding("deep", padded(off, p.wall_blocks), "row lane")
                 goes_on = (bodies.solids.prolongs | np.eye(bodies.count, dtype=bool)).astype(np.int32)
                 self.goes_on = own.holding("goes_on", goes_on, "part other", ti.i32)
                 sides = [*bodies.solids.sides, *(sides_of(tank.outline) for tank in tanks)]
@@ -69,25 +72,25 @@ class Lean:
 
     @ti.func
     def note(self, b, seen, steep: ti.template()):
-        """Store t (t·Σ V (−W'/r)(r_f − r_w))/Σ V W of a block of dummies, from Σ V W `seen` and that sum, `steep`."""
+        """Store t (t·Σ V (−W'/r)(r_f − r_w))/Σ V W of a block of walls, from Σ V W `seen` and that sum, `steep`."""
         p = self.particles
-        along = [p.load(self.along[a], b % p.stride - p.wet) for a in ti.static(range(p.axes))]
+        along = [p.load(self.along[a], b % p.stride - p.fluid_blocks) for a in ti.static(range(p.axes))]
         if ti.static(self.bodies.moving):
             self.bodies.turn(b, along, AT_START)
         leans = dot(along, steep) / ti.max(seen, 1e-30)
         if ti.static(self.bodies.count > 0):
             leans *= self.clear(b, along)
         for a in ti.static(range(p.axes)):
-            p.store(self.lean[a], b, leans * along[a])
+            p.store(self.correction[a], b, leans * along[a])
 
     @ti.func
     def clear(self, b, along: ti.template()):
-        """1 for the dummies of a block that are away from all walls but their own as the step begins; else 0.
+        """1 for the wall particles of a block that are away from all walls but their own as the step begins; else 0.
 
         Their own is a plate with those that go on in its line (`prolonging`).
         """
         p, w, row = self.particles, b // self.particles.stride, self.bodies.row(b)
-        clear, deep = p.ones(), p.load(self.deep, b % p.stride - p.wet)
+        clear, deep = p.ones(), p.load(self.deep, b % p.stride - p.fluid_blocks)
         to_face = [0.0 - deep * along[1], deep * along[0]]
         for k in ti.static(range(self.bodies.count)):
             owner = self.bodies.owner[ti.max(row, 0)]
@@ -109,10 +112,10 @@ class Lean:
 
     @ti.func
     def clear_of(self, b, k: ti.template(), pose: ti.template(), to_face: ti.template()):
-        """1 for the dummies of a block that are away from the part k at a pose (y, z, cosine, sine), else 0.
+        """1 for the wall particles of a block that are away from the part k at a pose (y, z, cosine, sine), else 0.
 
-        The tanks follow the parts. Distances are from the face, and from there on to the dummy: so is the one from the
-        corner between two walls.
+        The tanks follow the parts. Distances are from the face, and from there on to the wall particle: so is the one
+        from the corner between two walls.
         """
         p, clear = self.particles, self.particles.ones()
         o_y, o_z, cos, sin = pose
@@ -129,6 +132,6 @@ class Lean:
         return clear
 
     @ti.func
-    def given(self, jb, lane, value, axis: ti.template()):
+    def taken_off(self, jb, lane, value, axis: ti.template()):
         """What is to be taken from (−W'/r)(r_i − r_w) along an axis, for particles at which W is `value`."""
-        return value * self.lean[axis][jb, lane]
+        return value * self.correction[axis][jb, lane]

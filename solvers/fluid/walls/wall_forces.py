@@ -2,8 +2,8 @@
 
 import taichi as ti
 
-from solvers.fluid.lists import Medium
-from solvers.fluid.surface.fullness import Fullness
+from solvers.fluid.lists import FluidContext
+from solvers.fluid.surface.void_indicator import VoidIndicator
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
@@ -11,15 +11,15 @@ from solvers.tank.pieces import RATE
 
 
 @ti.data_oriented
-class WallPush:
-    """Forces of dummies on blocks of water, −Σ V_i V_w (p_i + p_w) ∇W and drag, whose reactions are the walls' load."""
+class WallForces:
+    """Forces of walls on blocks of water, −Σ V_i V_w (p_i + p_w) ∇W and drag, whose reactions are the walls' load."""
 
-    def __init__(self, medium: Medium, walls: Extrapolation, fullness: Fullness):
-        self.particles, self.lists, self.constants = medium.particles, medium.lists, medium.constants
-        self.poses, self.bodies, self.walls, self.fullness = medium.poses, medium.lists.bodies, walls, fullness
+    def __init__(self, context: FluidContext, walls: Extrapolation, voids: VoidIndicator):
+        self.particles, self.lists, self.constants = context.particles, context.lists, context.constants
+        self.poses, self.bodies, self.walls, self.voids = context.poses, context.lists.bodies, walls, voids
 
     @ti.func
-    def push_off(
+    def add(
         self,
         u,
         b,
@@ -35,13 +35,13 @@ class WallPush:
         fill: ti.template(),
         taken: ti.template(),
     ):
-        """Add what the dummies of a piece, the entries between two `ends` of a list, do to a block.
+        """Add what the wall particles of a piece, the entries between two `ends` of a list, do to a block.
 
-        `fill` are sums of `Fullness`, `taken` the powers that viscosity and dummies take. Piece 0 is the tank, the
-        others are parts in it."""
+        `fill` are sums of `VoidIndicator`, `taken` the powers that viscosity and wall particles take. Piece 0 is the
+        tank, the others are parts in it."""
         p, c, lists = self.particles, self.constants, self.lists
         shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), c.strength(), p.gases(b)
-        squeezed = 1.0 + gas * p.load(p.excess, b)  # of air as heavy as before in less volume
+        squeezed = 1.0 + gas * p.load(p.deviation, b)  # of air as heavy as before in less volume
         weighs = [p.zeros() for _ in ti.static(range(p.axes))]
         if ti.static(c.two):
             w = self.lists.units.world(u)
@@ -55,13 +55,13 @@ class WallPush:
             apart = lists.apart(own, origin, j)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            volume = p.volume[jb, lane] * lists.sees(b, j, apart, AT_START)
+            volume = p.volume[jb, lane] * lists.visible(b, j, apart, AT_START)
             weight = volume * c.kernel.slope(t)
             if ti.static(c.shifting.acts):
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
-            if ti.static(self.fullness.acts):
+            if ti.static(self.voids.acts):
                 fill[p.axes] += weight * square
                 for a in ti.static(range(p.axes)):
                     off = weight * apart[a]
@@ -72,17 +72,17 @@ class WallPush:
                 spring *= squeezed
                 along = along - dot(weighs, apart)
                 if ti.static(c.coheres):
-                    along += (gas * c.get("cohesion")) * c.cohesion.push(p.load(p.excess, b))
+                    along += (gas * c.get("cohesion")) * c.cohesion.push(p.load(p.deviation, b))
             along = along * weight + spring
             more = along - pressure * weight
             if ti.static(c.two):
                 more = along - (pressure * weight) * (1.0 + gas)
             for a in ti.static(range(p.axes)):
                 own_push[a] += more * apart[a]
-            if ti.static(self.walls.lean.acts):
+            if ti.static(self.walls.tangential.acts):
                 by_wall = volume * p.pressure[jb, lane] * c.kernel.value(t)
                 for a in ti.static(range(p.axes)):
-                    off = self.walls.lean.given(jb, lane, by_wall, a)
+                    off = self.walls.tangential.taken_off(jb, lane, by_wall, a)
                     wall[a] = wall[a] - off
                     own_push[a] = own_push[a] - off
                     if ti.static(self.bodies.moving):
@@ -127,7 +127,7 @@ class WallPush:
 
     @ti.func
     def wall_pressure(self, b, lane, gas: ti.template(), pressure: ti.template()):
-        """The pressure (Pa) of a dummy, as particles of these phases and pressures see it: air its own."""
+        """The pressure (Pa) of a wall particle, as particles of these phases and pressures see it: air its own."""
         p = self.particles
         if ti.static(p.two):
             return (1.0 - gas) * p.pressure[b, lane] + gas * pressure
@@ -145,7 +145,7 @@ class WallPush:
 
     @ti.func
     def borne(self, u, b, push: ti.template()):
-        """The walls' push on a block, less what its particles lack of their weight: the walls bear it (`Reduced`)."""
+        """The walls' push on a block, less what its particles lack of their weight (`ReducedPressure`)."""
         p, found = self.particles, [push[a] for a in ti.static(range(self.particles.axes))]
         if ti.static(self.constants.modified):
             for a in ti.static(range(p.axes)):
@@ -167,7 +167,7 @@ class WallPush:
 
     @ti.func
     def note_past(self, u, b, origin: ti.template(), own: ti.template(), speed: ti.template(), past: ti.template()):
-        """The velocities (m/s) with which the particles of a block pass the walls before and behind; see `Between`."""
+        """The velocities (m/s) with which the particles of a block pass the end walls; see `EndWallFriction`."""
         p = self.particles
         for a in ti.static(range(p.axes)):
             past[a] = p.filled(b) * speed[a]

@@ -1,4 +1,4 @@
-"""Who sees whom past the plates in the water: plates have no thickness, and hide what is behind them."""
+"""The visibility criterion: plates in the water have no thickness, and hide what is behind them."""
 
 from collections.abc import Sequence
 
@@ -23,20 +23,20 @@ REACH, TOUCH, BLUR = range(3)  # of `lengths`
 
 
 @ti.data_oriented
-class Sight:
-    """Two particles see each other if no plate crosses the line between them.
+class Visibility:
+    """Two particles are neighbours only if they see each other: if no plate crosses the line between them.
 
-    A plate's own dummies, which lie behind it, are seen just by those whose line of sight it crosses. So what is seen
-    past the end of a plate and what is seen through it never overlap: their shares are 1 together. An end that touches
-    the tank's wall reaches on into it. Plates in one line that touch and move alike are one plate, with one row of
-    dummies, and no water passes between them. `plates` are the numbers of the parts of each plate.
+    A plate's own wall particles, which lie behind it, are seen just by those whose line of sight it crosses. So what is
+    seen past the end of a plate and what is seen through it never overlap: their shares are 1 together. An end that
+    touches the tank's wall reaches on into it. Plates in one line that touch and move alike are one plate, with one row
+    of wall particles, and no water passes between them. `plates` are the numbers of the parts of each plate.
 
-    Over the last smoothing length h before a free end a plate becomes transparent, by χ = x² (3 − 2x) at the distance
-    x h from the end: a pair that it parts there counts with 1 − χ, a dummy with χ. Else pairs come and go at once as
-    the line between them passes the end, with forces of many weights, and still water stirs itself for ever: beside a
-    baffle of half its depth, 15 layers, to 0.2 m/s (r.m.s.), where it rests now. Over half of h it begins to move after
-    3 s, over three halves it rests as well. After the transparent tips of cracks of Organ, Fleming, Terry & Belytschko
-    (1996), Comput. Mech. 18, 225, who lengthen distances there instead.
+    Over the last smoothing length h before a free end a plate becomes transparent, by χ = x² (3 − 2x) at the distance x
+    h from the end: a pair that it parts there counts with 1 − χ, a wall particle with χ. Else pairs come and go at once
+    as the line between them passes the end, with forces of many weights, and still water stirs itself for ever: beside
+    a baffle of half its depth, 15 layers, to 0.2 m/s (r.m.s.), where it rests now. Over half of h it begins to move
+    after 3 s, over three halves it rests as well. After the transparent tips of cracks of Organ, Fleming, Terry &
+    Belytschko (1996), Comput. Mech. 18, 225, who lengthen distances there instead.
 
     Limits: so a plate is shorter by some h/2 at a free end, at once when the end leaves a wall, as a gate's does. Ends
     of plates that meet at an angle, or do not move alike, are free, and so let water pass.
@@ -48,7 +48,7 @@ class Sight:
         firsts = [k for k, part in enumerate(parts) if wet[k] and not is_solid(part) and not alike[k, :k].any()]
         self.plates, self.count = [np.flatnonzero(alike[k]) for k in firsts], len(firsts)
         if self.plates:
-            own = arrays.under("sight")
+            own = arrays.under("visibility")
             lines = np.array([line_of(parts, members).ravel() for members in self.plates])
             lengths = np.array([water.reach, TOUCHES * water.spacing, water.length])
             self.lengths = own.holding("lengths", lengths, "length", own.exact)
@@ -64,10 +64,10 @@ class Sight:
             (self.line,) = own.reals(each, "line", kept=False)
 
     def join(self, arrays: State, particles: Particles, owner: np.ndarray, first: ti.Field, order: Order) -> None:
-        """Take the `particles` and their `order`; of the dry blocks those from `first` (1,) on are of parts `owner`."""
+        """Take the `particles` and their `order`; the wall blocks from `first` (1,) on are of parts `owner`."""
         self.particles, self.first, self.order = particles, first, order
         if self.plates:
-            self.plate = arrays.under("sight").holding("plate", self.number_of(owner), "row", ti.i32)
+            self.plate = arrays.under("visibility").holding("plate", self.number_of(owner), "row", ti.i32)
 
     def number_of(self, parts: np.ndarray) -> np.ndarray:
         """The plates (n,) that these parts are, or parts of; UNUSED for solid bodies."""
@@ -122,7 +122,7 @@ class Sight:
         `apart` are the places of the block less the other one's.
         """
         p = self.particles
-        before = p.wet + self.first[0]
+        before = p.fluid_blocks + self.first[0]
         w, own, other = b // p.stride, b % p.stride - before, jb % p.stride - before
         share, reach = p.ones(), ti.cast(self.lengths[REACH], p.real)
         sharp = ti.cast(1.0 / self.lengths[BLUR], p.real)
@@ -132,7 +132,7 @@ class Sight:
             y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
             across = t_y * z - t_z * y
             if across * across < 4.0 * reach * reach and self.is_in(q, b):
-                its = ti.cast(0.0, p.real)  # 1 where one of the two is a dummy of this plate
+                its = ti.cast(0.0, p.real)  # 1 where one of the two is a wall particle of this plate
                 if own >= 0:
                     its = ti.select(self.plate[own] == q, 1.0, its)
                 if other >= 0:

@@ -1,4 +1,4 @@
-"""The census of the water: sums over its particles, taken in one order on any number of threads."""
+"""Diagnostics of the water: sums over its particles, taken in one order on any number of threads."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -31,7 +31,7 @@ SUMS = (
         "air_pressed",
         "air_volume",
     ),  # of two phases: the air's part of these
-    *("excess", "escaped", "air_density_deviation"),  # largest values, not sums
+    *("deviation", "escaped", "air_density_deviation"),  # largest values, not sums
 )
 
 
@@ -58,7 +58,7 @@ class Pool:
 
 
 @ti.data_oriented
-class Census:
+class Diagnostics:
     """Sums over a world's particles, and what each particle's velocity is now, relative to the tank.
 
     `now` (W,) m/s, rad/s, m/s²: velocity, rate of roll and gravity of the tank in its own axes when it was last noted.
@@ -73,8 +73,8 @@ class Census:
         self.quantities = tuple(quantity.within(particles.axes) for quantity in listed)
         self.at = SimpleNamespace(**{name: k for k, name in enumerate(SUMS)})
         self.columns = places(self.quantities)
-        own, world = arrays.under("water.census"), Axis("world", particles.worlds)
-        self.chunks = -(-particles.wet // CHUNK)
+        own, world = arrays.under("water.diagnostics"), Axis("world", particles.worlds)
+        self.chunks = -(-particles.fluid_blocks // CHUNK)
         sums = world, Axis("chunk", self.chunks)
         self.sums = own.reals(sums, *SUMS, kind=arrays.exact, kept=False)
         names = "tank_y", "tank_z", "tank_rate", "pull_y", "pull_z", "height"
@@ -88,11 +88,11 @@ class Census:
         self.level_sides = own.holding("level_sides", np.array(sides), "side", arrays.exact)
         (self.level_depth,) = own.reals((world, Axis("level", room)), "level_depth", kept=False)
 
-    def take(self, time: float, thickness: float) -> dict[str, np.ndarray]:
+    def sums_at(self, time: float, thickness: float) -> dict[str, np.ndarray]:
         """Sums of every world at `time` (s), (W, …) by the names of `SUMS`, for a tank of `thickness` (m)."""
         self.count(time)
         found = {name: field.to_numpy() for name, field in zip(SUMS, self.sums, strict=True)}
-        extreme = {name: found.pop(name).max(axis=1) for name in ("excess", "escaped", "air_density_deviation")}
+        extreme = {name: found.pop(name).max(axis=1) for name in ("deviation", "escaped", "air_density_deviation")}
         return {name: values.sum(axis=1) * thickness for name, values in found.items()} | extreme
 
     def of_water(self, sums: dict[str, np.ndarray], mass: np.ndarray, centre: np.ndarray) -> dict[str, np.ndarray]:
@@ -112,7 +112,7 @@ class Census:
         }
 
     def buoyed(self, sums: dict[str, np.ndarray], down: np.ndarray) -> np.ndarray | float:
-        """Σ ρ_a m_i/ρ_0i r_i·`down` (W,) kg m: times g, what `Reduced` adds to the potential energy; 0 without."""
+        """Σ ρ_a m_i/ρ_0i r_i·`down` (W,) kg m: times g, what `ReducedPressure` adds to the potential; else 0."""
         if not self.constants.modified:
             return 0.0
         share = self.constants.numbers["buoyed"]
@@ -121,7 +121,7 @@ class Census:
         return ((share * (of_all - of_air) + of_air) * down).sum(axis=1)
 
     def whole(self, pressure: np.ndarray, place: list[np.ndarray]) -> np.ndarray:
-        """The pressures (W, n) Pa at `place` (y and z) where these are found, which may be reduced ones (`Reduced`)."""
+        """The pressures (W, n) Pa at `place` (y and z), from those that are found, which may be reduced ones."""
         if not self.constants.modified:
             return pressure
         pull = np.stack([field.to_numpy() for field in self.now[3:5]], axis=1)
@@ -166,7 +166,7 @@ class Census:
         for b in range(start + chunk * CHUNK, start + ti.min(p.used[w], (chunk + 1) * CHUNK)):
             for lane in range(p.lanes):
                 if p.number[b, lane] != UNUSED:
-                    m, s = ti.cast(p.mass[b, lane], self.exact), ti.cast(p.excess[b, lane], self.exact)
+                    m, s = ti.cast(p.mass[b, lane], self.exact), ti.cast(p.deviation[b, lane], self.exact)
                     m *= self.order.weight(b)
                     r = [ti.cast(p.place[a][b, lane], self.exact) for a in ti.static(range(p.axes))]
                     u = self.velocity_now(w, b, lane)
@@ -196,7 +196,7 @@ class Census:
                     if is_water:
                         sums[self.at.elastic] += m * sound * c.state.energy(s)
                         sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
-                        sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
+                        sums[self.at.deviation] = ti.max(sums[self.at.deviation], ti.abs(s))
                     if ti.static(self.closed):
                         dent = 0.5 + p.gas_at(b, lane)  # spacings: water may squeeze air into a wall
                         if self.is_out(w, self.order.layer(b), [p.place[0][b, lane], p.place[1][b, lane]], dent):
@@ -206,7 +206,7 @@ class Census:
 
     @ti.func
     def add_air(self, sums: ti.template(), held: ti.template(), r: ti.template(), v: ti.template(), w):
-        """Add a particle of air, of the mass (kg/m) and excess of density `held`, at r (m) and v (m/s) in the tank."""
+        """Add a particle of air, of the mass (kg/m) and density deviation `held`, at r (m) and v (m/s) in the tank."""
         c, m, s = self.constants, held[0], held[1]
         stiffness = ti.cast(c.get("air_stiffness"), self.exact)
         volume = m / ((1.0 + s) * c.get("air_density"))

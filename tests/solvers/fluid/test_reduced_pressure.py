@@ -8,7 +8,7 @@ import pytest
 
 from solvers.fluid.checks import refuse_reduced
 from solvers.fluid.given import Gauge
-from solvers.fluid.phases.reduced import Reduced
+from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.machine.errors import Unavailable
 from solvers.motion.harmonic import Sway
 from solvers.scene import Scene
@@ -107,19 +107,19 @@ def test_momentum_and_energy_in_a_tank_that_sways(pool):
 def test_the_background_bears_less():
     """The difference of both weights over one smoothing length, not the whole weight of the upper fluid."""
     made = scene().fluid.water
-    assert Reduced.hanging(made, GRAVITY, 1.0) == pytest.approx(500.0 * GRAVITY * made.length)
+    assert ReducedPressure.hanging(made, GRAVITY, 1.0) == pytest.approx(500.0 * GRAVITY * made.length)
     whole = replace(made, air=replace(made.air, reduced=None))
-    assert Reduced.hanging(whole, GRAVITY, 1.0) == pytest.approx(500.0 * GRAVITY)
-    assert Reduced.weight(made, GRAVITY) == pytest.approx(0.5 * GRAVITY)
+    assert ReducedPressure.hanging(whole, GRAVITY, 1.0) == pytest.approx(500.0 * GRAVITY)
+    assert ReducedPressure.weight(made, GRAVITY) == pytest.approx(0.5 * GRAVITY)
 
 
 def test_starts_at_rest_without_weight_above():
     """Under the reduced pressure the upper fluid has none at rest, the water that of half its weight."""
     made = scene()
     drops, wet = made.fluid.particles[0], made.fluid.particles["gas"][0] < 0.5
-    assert (drops["excess"][~wet] == 0.0).all()
+    assert (drops["deviation"][~wet] == 0.0).all()
     share = 0.5 * GRAVITY * (DEPTH - drops["position"][wet, 1]) / made.fluid.water.sound_speed**2
-    np.testing.assert_allclose(drops["excess"][wet], share, rtol=1e-2)
+    np.testing.assert_allclose(drops["deviation"][wet], share, rtol=1e-2)
 
 
 def test_what_does_not_go_with_it():

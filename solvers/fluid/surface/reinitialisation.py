@@ -1,4 +1,4 @@
-"""The density that a particle carries, kept in step with how close its neighbours are."""
+"""Density re-initialisation: the density that a particle carries, tied to how close its neighbours are."""
 
 import numpy as np
 import taichi as ti
@@ -8,14 +8,14 @@ from solvers.machine.state import Axis, State
 
 SLOW = 0.01  # of δ c0/h, the rate at which diffusion evens the densities of neighbours
 FELT = 10.0  # of |ρ/ρ0 − 1|, the most that counts of F/F_0 − 1
-SEEN = 0.1  # of fullness that a surface takes off half the trace: from there on it is too near
+SEEN = 0.1  # of F that a surface takes off half the trace: from there on it is too near
 
 VOID = -0.1  # what F of air may lack: to fill a void is left to the flow
 
 
 @ti.data_oriented
-class Consistency:
-    """dρ_i/dt has the term a_i ρ_i (F_i/F_0 − 1)/τ, F of `Fullness`, τ = 100 h/(δ c0): it keeps the volume of water.
+class Reinitialisation:
+    """dρ_i/dt has the term a_i ρ_i (F_i/F_0 − 1)/τ, F of `VoidIndicator`, τ = 100 h/(δ c0): it keeps the volume.
 
     Density that follows from the motion of neighbours is not tied to where they are. Errors of many cycles add up:
     water ends packed too close at the density of rest, and its level sinks. Colagrossi & Landrini (2003) set the
@@ -37,8 +37,8 @@ class Consistency:
     Air fills what water leaves, so that F of all that is about it, water and walls, is 1 wherever air is (own
     derivation): there F is of both phases, a_i = 1, and τ has the air's speed of sound. F/F_0 − 1 counts down to VOID.
 
-    Limits: water that loses volume faster than in τ, or of two rows or less, is not kept. Not where `Fullness` does not
-    act, nor without diffusion of density, which the term needs.
+    Limits: water that loses volume faster than in τ, or of two rows or less, is not kept. Not where `VoidIndicator`
+    does not act, nor without diffusion of density, which the term needs.
 
     Units: ρ kg/m³, τ s, h m, c0 m/s.
     """
@@ -60,23 +60,23 @@ class Consistency:
         }
 
     @ti.func
-    def note(self, b, fullness, lacking, gas: ti.template()):
-        """Store a_i (F_i/F_0 − 1)/τ (1/s) of a block, from its fullness and what of it a surface makes it lack."""
+    def note(self, b, indicator, lacking, gas: ti.template()):
+        """Store a_i (F_i/F_0 − 1)/τ (1/s) of a block, from its F and what of it a surface makes it lack."""
         p, c = self.particles, self.constants
-        deep = ti.select(fullness > c.get("packed"), ti.max(1.0 - c.get("seen") * lacking, 0.0), p.zeros())
-        off = c.get("lattice") * fullness - 1.0
+        deep = ti.select(indicator > c.get("packing"), ti.max(1.0 - c.get("seen") * lacking, 0.0), p.zeros())
+        off = c.get("lattice") * indicator - 1.0
         if ti.static(c.two):
             deep = (1.0 - gas) * deep + gas
             off = ti.max(off, gas * VOID - (1.0 - gas))
         else:
-            s = p.load(p.excess, b)
+            s = p.load(p.deviation, b)
             most = FELT * ti.max(s, 0.0 - s)
             off = ti.min(ti.max(off, 0.0 - most), most)
         p.store(self.drift, b, (c.of("keeping", gas) * deep) * off)
 
     @ti.func
     def rate(self, b, s):
-        """The rate (1/s) of a block's excesses of density s."""
+        """The rate (1/s) of a block's density deviations s."""
         return (1.0 + s) * self.particles.load(self.drift, b)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 
-class Reduced:
+class ReducedPressure:
     """p' = p − ρ_a g·(r − r_0), m_i du_i/dt = … + m_i (1 − ρ_a/ρ_0i) g: the modified pressure (Batchelor 1967, §4.1).
 
     Of both fluids with the density ρ_a of the upper one, so that nothing is left out: what each lacks of its weight is
