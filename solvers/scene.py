@@ -13,7 +13,7 @@ from solvers.machine.limit import Limit
 from solvers.machine.marks import EachWorld, NotOfBed, in_one_launch, shared
 from solvers.matters import limits_of
 from solvers.motion.axle import Axle
-from solvers.motion.carrier import answered_shares, limits_of_carrier
+from solvers.motion.carrier import limits_of_carrier, shares_of_loads
 from solvers.ship.vessel import Vessel
 from solvers.tank.given import Given
 from solvers.tank.parts import Part
@@ -120,13 +120,13 @@ class Scene:
 
     @property
     def shares(self) -> np.ndarray | None:
-        """Factors (W, pieces) from each piece's load to that which a carrier answers to; None if none does."""
+        """Factors (W, pieces) from each piece's load to that which a carrier responds to; None if none does."""
         more = [part.tank for part in self.parts] + [0] * sum(matter.pieces for matter in self.matters)
-        return answered_shares(self.tanks, self.vessels, self.axles, more)
+        return shares_of_loads(self.tanks, self.vessels, self.axles, more)
 
     @property
-    def answers(self) -> bool:
-        """Whether the tanks' motion answers to the load of what is in them."""
+    def responds(self) -> bool:
+        """Whether the tanks' motion responds to the load of what is in them."""
         return bool(self.vessels or self.axles)
 
     @property

@@ -15,7 +15,7 @@ from solvers.machine.wide import real_vectors
 from solvers.matters import made, setting_of
 from solvers.motion.carrier import make_carrier
 from solvers.motion.moved import make_pieces
-from solvers.motion.observer import Observer
+from solvers.motion.sampler import Sampler
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.vessel import Vessel
@@ -54,10 +54,10 @@ class Simulation:
         self.threads = threads or runtime.available_cores()
         worlds, count = scene.worlds, moved(scene)
         asked = scene.precision, scene.flows, worlds * count
-        self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, *asked)
+        self.arch = "cpu" if scene.responds and arch == "auto" else runtime.choose_arch(arch, *asked)
         runtime.initialise(self.threads, self.arch, scene.precision)
         self.scene, self.dt, self.longest_step = scene, scene.time_step(), scene.longest_step(1.0)  # s; at set-up
-        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)
+        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.responds)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
@@ -68,7 +68,7 @@ class Simulation:
         self.simple = not scene.matters or any(matter.simple for matter in scene.matters)
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
-        means = [quantity for quantity in self.observer.quantities if quantity.mean]
+        means = [quantity for quantity in self.sampler.quantities if quantity.mean]
         # When last, and what the means were
         self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
         self.place(position, *next((matter.start for matter in scene.matters if matter.start), ()))
@@ -89,7 +89,7 @@ class Simulation:
         sequence = Sequence(matters, self.carrier)
         self.beat, self.wide = sequence.beat, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        self.observer = Observer(arrays, worlds, scene.pieces, self.carrier, loads)
+        self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, loads)
         arrays.finish()
 
     @property
@@ -201,7 +201,7 @@ class Simulation:
     def _observe(self) -> dict[str, np.ndarray]:
         runtime.merge_repeats(self.simple)
         now = self.origin + self.time
-        rows = self.observer.take(now, max(self.steps - self.observed, 1) * self.dt)
+        rows = self.sampler.read_and_reset(now, max(self.steps - self.observed, 1) * self.dt)
         for matter in self.matters.values():
             rows |= matter.observe(now)
         # Worlds in which no time has passed keep the last means.
@@ -220,7 +220,7 @@ class Simulation:
 
         The pieces are the walls of each tank, then the parts, then the fixed grains if there are any.
         """
-        return self.observer.on_pieces.to_numpy()
+        return self.sampler.on_pieces.to_numpy()
 
     def settle(self, rest: float, limit: float, tell: Callable[[float], None] = lambda _: None) -> bool:
         """Let all matters settle in the upright tank, then start the clock at zero; returns whether all are at rest.

@@ -81,7 +81,7 @@ def stretch(preset: Preset) -> int:
 
 def _base_share(scene: Scene, times: float) -> float:
     """What to take of the derived step so that it may be so many `times` as long; 1 where steps never are."""
-    if times <= 1.0 or scene.answers or scene.fluid or scene.grains.integrator == "gear":
+    if times <= 1.0 or scene.responds or scene.fluid or scene.grains.integrator == "gear":
         return 1.0
     return share_to_lengthen(scene.step_limits()[0].step, scene.step_limits(SLOWEST)[0].step, times)
 

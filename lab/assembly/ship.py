@@ -13,7 +13,7 @@ from lab.preset.sections import sea as seas
 from lab.preset.sections import ship as ships
 from lab.preset.units import show
 from solvers.machine.errors import Unavailable
-from solvers.motion.staggered import longest_step
+from solvers.motion.staggered_error import longest_step
 from solvers.ship.body import NOTHING, Body, bolted
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.linear import impedance, inertia_for_roll, require_damped

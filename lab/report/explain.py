@@ -91,9 +91,9 @@ def _one_bed(preset: Preset) -> Simulation:
     run = preset.run
     scene, position = build(replace(preset, run=replace(run, repeats=1)))
     asked = run.arch, run.precision, scene.particles > 0, run.repeats * particles(scene)
-    arch = "cpu" if scene.answers and run.arch == "auto" else choose_arch(*asked)
+    arch = "cpu" if scene.responds and run.arch == "auto" else choose_arch(*asked)
     sizes = run.repeats, particles(scene), run.threads or available_cores()
-    schedule = choose_schedule(run.schedule, arch, *sizes, scene.answers)
+    schedule = choose_schedule(run.schedule, arch, *sizes, scene.responds)
     units = units_a_world(schedule, *sizes)
     placed = replace(scene, schedule=schedule), position, run.threads
     return Simulation(*placed, arch=arch, units=units, stretch=stretch(preset))

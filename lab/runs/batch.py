@@ -69,10 +69,10 @@ class Run:
     def device(self, worlds: int = 0) -> dict[str, object]:
         """The device for a batch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
         settings, own, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
-        answers, worlds = self.scene.answers, worlds or own
+        responds, worlds = self.scene.responds, worlds or own
         threads, asked = settings.threads or available_cores(), (self.scene.particles > 0, worlds * count)
-        arch = "cpu" if answers and settings.arch == "auto" else choose_arch(settings.arch, settings.precision, *asked)
-        schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, answers)
+        arch = "cpu" if responds and settings.arch == "auto" else choose_arch(settings.arch, settings.precision, *asked)
+        schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, responds)
         if arch != "cpu":
             return {"arch": arch, "schedule": schedule}
         units = worlds * units_a_world(schedule, worlds, count, threads)

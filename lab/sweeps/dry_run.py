@@ -81,14 +81,14 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
 
 
 def _poses(preset: Preset, scene: Scene, position: np.ndarray, times: np.ndarray) -> Iterator[np.ndarray]:
-    """Pose (1, 3) of the tank at each time (s); one that answers to its load rolls slowly."""
-    if scene.answers or not scene.motions[0]:
-        yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * scene.answers for time in times)
+    """Pose (1, 3) of the tank at each time (s); one that responds to its load rolls slowly."""
+    if scene.responds or not scene.motions[0]:
+        yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * scene.responds for time in times)
         return
     simulation = Simulation(scene, position, preset.run.threads, arch="cpu")
     try:
         for time in times:
-            simulation.observer.observe(float(time), 1.0)
-            yield parted(simulation.observer.rows.to_numpy(), simulation.observer.quantities)["pose"].astype(float)
+            simulation.sampler.sample(float(time), 1.0)
+            yield parted(simulation.sampler.rows.to_numpy(), simulation.sampler.quantities)["pose"].astype(float)
     finally:
         simulation.close()

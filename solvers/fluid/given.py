@@ -88,8 +88,8 @@ class Water:
     "y" or "z", along which space repeats itself with the tank's width or height, so that it has no walls there.
     `start`: the name of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides,
     None: nothing. `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share
-    `swing_damping` of the critical damping. `added_mass`: "layer" or "none", whether a ship has the answer of the wall
-    particles on her own side.
+    `swing_damping` of the critical damping. `added_mass`: "layer" or "none", whether a ship has the added mass of the
+    wall particles on her own side.
     """
 
     spacing: float

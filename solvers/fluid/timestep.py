@@ -66,7 +66,7 @@ def limits_of_water(scene, closing: float = 0.0) -> list[Limit]:
 def longest_pace(scene, step: float) -> int:
     """How many base steps of `step` (s) a step of the water may be long: beside grains in a ship, by its own bounds.
 
-    Not where a ship takes its water's answer on her own side, or takes long steps herself.
+    Not where a ship takes its water's added mass on her own side, or takes long steps herself.
     """
     if not (scene.fluid and scene.grains and scene.vessels):
         return 1

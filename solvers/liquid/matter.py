@@ -41,7 +41,7 @@ class LiquidMatter(Matter):
         self.carrier, self.exact = setting.carrier, arrays.exact
         self.units = Units(worlds, 1, 1, 1)
         self.load = setting.load(arrays.under("water"), self.units)
-        self.load.answer(arrays.under("water"))
+        self.load.add_mass(arrays.under("water"))
         self.thickness = scene.tanks[0].thickness
         self.modes: list[Modes] = modes_of(scene)
         self.tanks, self.swings = len(self.modes), max(len(one.mass) for one in self.modes)
@@ -74,7 +74,7 @@ class LiquidMatter(Matter):
 
     @ti.func
     def push(self, u, t, kick, dt):
-        """The load of the liquid on tanks that are not accelerated, and its inertia."""
+        """The load of the liquid on tanks that are not accelerated, and its added mass."""
         self.load.begin(u)
         w = self.units.world(u)
         motion = self.carrier.kinematics(w, t)
@@ -100,7 +100,7 @@ class LiquidMatter(Matter):
             none = 0.0 * mass
             entries = ti.Vector([across, none, slant, none, mass, mass * y, slant, mass * y, turning])
             for n in ti.static(range(self.load.entries)):
-                self.load.inertia[u, self.piece[k], n] = entries[n]
+                self.load.added_mass[u, self.piece[k], n] = entries[n]
             self.load.book(u, self.piece[k], ti.Vector([force_y, force_z, moment]), dt)
 
     @ti.func
@@ -110,7 +110,7 @@ class LiquidMatter(Matter):
         b, rate, up = ti.cast(frame[0], self.exact), ti.cast(frame[2], self.exact), ti.cast(frame[3], self.exact)
         gains = ti.Vector([self.pull[0][w] - b, self.pull[1][w] - ti.cast(frame[1], self.exact), up])
         for piece in range(self.load.pieces):
-            self.load.book_answer(u, piece, gains, dt)
+            self.load.book_reaction(u, piece, gains, dt)
         during, whole = ti.cast(kick, self.exact), ti.cast(dt, self.exact)
         sound = True
         for k in range(self.tanks):

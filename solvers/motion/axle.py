@@ -1,7 +1,7 @@
-"""A tank that is free to roll about an axle: one degree of freedom, which answers to the load of the tank's contents.
+"""A tank that is free to roll about an axle: one degree of freedom, which responds to the load of the tank's contents.
 
 As with a ship, the axle takes the load of the instant, before the contents are moved, so that neither lags behind the
-other and no momentum is lost between them (see `motion.afloat` for what staggered schemes do).
+other and no momentum is lost between them (see `motion.floating_ships` for what staggered coupling does).
 """
 
 from collections.abc import Callable, Sequence
@@ -103,7 +103,7 @@ class OnAxle:
     Loads are those on the slab; with `Load`'s shares they are those on the whole tank.
     """
 
-    rotating = moving = answers = True
+    rotating = moving = responds = True
     paced = False  # leapfrog needs steps of one length
 
     def __init__(self, arrays: State, axles: Sequence[Axle], gravity: float, thickness: float):

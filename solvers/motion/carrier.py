@@ -6,10 +6,10 @@ import numpy as np
 
 from solvers.machine.limit import Limit
 from solvers.machine.state import State
-from solvers.motion.afloat import Afloat
-from solvers.motion.as_k import AsK
 from solvers.motion.axle import Axle, OnAxle
+from solvers.motion.floating_ships import FloatingShips
 from solvers.motion.prescribed import Prescribed
+from solvers.motion.staggered_ships import StaggeredShips
 from solvers.ship.vessel import Vessel
 from solvers.tank.tank import Tank
 
@@ -19,21 +19,21 @@ def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: flo
     return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
 
 
-def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | AsK | OnAxle:
+def make_carrier(arrays: State, scene, dt: float) -> Prescribed | FloatingShips | StaggeredShips | OnAxle:
     """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
-        kind = AsK if scene.vessels[0].handover else Afloat
+        kind = StaggeredShips if scene.vessels[0].handover else FloatingShips
         return kind(arrays, scene.vessels, scene.gravity, every, scene.fluid is not None)
     if scene.axles:
         return OnAxle(arrays, scene.axles, scene.gravity, scene.tanks[0].thickness)
     return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)
 
 
-def answered_shares(
+def shares_of_loads(
     tanks: Sequence[Tank], vessels: Sequence[Vessel], axles: Sequence[Axle], more: Sequence[int]
 ) -> np.ndarray | None:
-    """Factors (W, pieces) from each piece's load to what the carrier answers to; None for prescribed motions.
+    """Factors (W, pieces) from each piece's load to what the carrier responds to; None for prescribed motions.
 
     That is the load per metre of a ship, or that on the whole tank of an axle. `more`: the tanks of further pieces.
     """

@@ -46,7 +46,7 @@ class Poses:
     def note_start(self, w, t, dt):
         """Note what the forces at the beginning of a step of dt (s) need, at time t (s).
 
-        The walls' acceleration is as the carrier knows it. One that answers to the load knows that of its last step.
+        The walls' acceleration is as the carrier knows it. One that responds to the load knows that of its last step.
         Only the layer of water before the walls, a smoothing length thick, feels it through the wall particles'
         pressures. If this layer were heavier than the carrier, it and the carrier would drive each other (Causin,
         Gerbeau & Nobile 2005); as it is far lighter, the delay is one of a step, in which sound crosses less than that
@@ -74,7 +74,7 @@ class Poses:
 
     @ti.func
     def note_passage(self, w, t, dt):
-        """Note how the tank moves through the step of dt (s) from time t (s), once its carrier has answered.
+        """Note how the tank moves through the step of dt (s) from time t (s), once its carrier has responded.
 
         A long one ends with the carrier's present step.
         """

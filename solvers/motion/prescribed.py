@@ -31,7 +31,7 @@ class Prescribed:
     a tilt followed by a sway is a tilting table on a swaying deck.
     """
 
-    answers = False  # the motion does not respond to the cargo's load
+    responds = False  # the motion does not respond to the cargo's load
     phases = ()  # it has no phases in a step
     paced = True  # steps may have any length
 

@@ -8,7 +8,7 @@ import taichi as ti
 from solvers.machine.state import Axis, State
 from solvers.motion.buoyancy import Hulls
 from solvers.motion.frame import turned
-from solvers.motion.hold import APART
+from solvers.motion.tank_frame import APART
 from solvers.ship.potential.memory import padded
 from solvers.ship.vessel import Vessel
 
@@ -151,7 +151,7 @@ class Rates:
     def solved(self, w, matrix, force, loose: ti.template()):
         """Accelerations of an inertia `matrix` (3, 3), with the added mass, under a force; zero where not free.
 
-        With `loose` what the matters answer at once is part of the inertia as well.
+        With `loose` the matters' added mass is part of the inertia as well.
         """
         inertia, right = matrix, force
         for i in ti.static(range(3)):
@@ -160,7 +160,7 @@ class Rates:
                 both = self.free[w, i] * self.free[w, j]
                 inertia[i, j] = both * (inertia[i, j] + self.added[w, i, j])
                 if ti.static(loose):
-                    inertia[i, j] = inertia[i, j] + both * self.hold.seen[w, 3 * i + j]
+                    inertia[i, j] = inertia[i, j] + both * self.tank_frame.of_ship[w, 3 * i + j]
             inertia[i, i] = inertia[i, i] + 1.0 - self.free[w, i]
         return inertia.inverse() @ right
 

@@ -9,8 +9,8 @@ from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
 from solvers.motion.frame import turned
 from solvers.motion.harmonic import soft_start
-from solvers.motion.hold import Hold, apart
 from solvers.motion.rates import WORKS, Rates
+from solvers.motion.tank_frame import TankFrame, apart
 from solvers.ship.body import Body
 from solvers.ship.vessel import Vessel
 from solvers.tank.load import Load
@@ -23,19 +23,19 @@ class Ships(Rates):
     The load is that of `Load.of_world`, per metre of a ship's length. `every` is the number of steps in an interval.
     """
 
-    rotating = moving = answers = True
+    rotating = moving = responds = True
     paced = False  # the ship's steps have one length
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
         super().__init__(arrays, vessels, gravity)
-        self.loads, self.pressed, self.phases = (), False, (Phase(self.follow),)
+        self.loads, self.adds_mass, self.phases = (), False, (Phase(self.follow),)
         own, world, worlds = self.own, Axis("world", len(self.vessels)), len(self.vessels)
         self.every = own.holding("every", np.array([every]), "one", ti.i32)
         self.heel = self._table("heel", [vessel.heel for vessel in self.vessels])
         self.release = self._table("release", [vessel.release for vessel in self.vessels])
         limits = [np.clip(vessel.limits, -1e9, 1e9) for vessel in self.vessels]
         self.limits = self._table("limits", limits, "number")
-        self.hold = Hold(own, self._places(), gravity, wet)
+        self.tank_frame = TankFrame(own, self._places(), gravity, wet)
         # The pose upright, and at the release
         self.upright, self.heeled = own.reals((world, Axis("motion", 3)), "upright", "heeled", kind=own.exact)
         (self.done,) = own.integers(self.row, "done")
@@ -47,9 +47,10 @@ class Ships(Rates):
     def bear(self, loads: Sequence[Load]) -> None:
         """Respond to these loads from now on, those of all matters in the tank."""
         self.loads = tuple(loads)
-        self.pressed = any(load.pressed for load in loads)
-        self.late = sum([load.late for load in loads if load.late is not None], np.zeros((len(self.vessels), 3, 3)))
-        self.eased = any(load.eased for load in loads)
+        self.adds_mass = any(load.adds_mass for load in loads)
+        lagged = [load.lagged_mass for load in loads if load.lagged_mass is not None]
+        self.lagged_mass = sum(lagged, np.zeros((len(self.vessels), 3, 3)))
+        self.relaxed = any(load.relaxed for load in loads)
 
     def begin(self, cargo: Callable[[], Sequence[Body]]) -> None:
         """Hold the ships at rest, upright in equilibrium; `cargo` returns theirs (W,), per metre in the tank's axes.
@@ -57,11 +58,11 @@ class Ships(Rates):
         Raises Unavailable if a ship sinks, if the cargo leaves a hull no mass or no inertia, or if it is too light.
         """
         body, upright, heeled = [], [], []
-        for vessel, load, late in zip(self.vessels, cargo(), self.late, strict=True):
+        for vessel, load, lagged in zip(self.vessels, cargo(), self.lagged_mass, strict=True):
             aboard = vessel.aboard(load)
             hull = vessel.hull(aboard)
-            if not self.eased:
-                vessel.refuse_light(hull, late)
+            if not self.relaxed:
+                vessel.refuse_light(hull, lagged)
             body.append([hull.mass, *np.subtract(hull.centre, vessel.ship.about), hull.inertia])
             upright.append(vessel.pose(aboard, 0.0))
             heeled.append(vessel.pose(aboard, vessel.heel))
@@ -74,7 +75,7 @@ class Ships(Rates):
         self.done.fill(0)
         self.state.fill(0.0)
         still = [[*np.add(pose[:2], place), *[0.0] * 7] for pose, place in zip(upright, self._places(), strict=True)]
-        self.hold.tank.from_numpy(self._typed(apart(still)))
+        self.tank_frame.tank.from_numpy(self._typed(apart(still)))
 
     def _places(self) -> np.ndarray:
         """The tank's origin (W, 2) m from P, in the hulls' axes."""
@@ -94,17 +95,17 @@ class Ships(Rates):
     def frame(self, w, t):
         """The tank's frame for the cargo: (b_y, b_z, φ̇, φ̈), with the body force per mass b = R(−φ)(g − P̈)."""
         # Number by number: whole vectors are not cast on real ones (`machine.wide`).
-        return ti.Vector([ti.cast(self.hold.felt[w, k], self.real) for k in ti.static(range(4))])
+        return ti.Vector([ti.cast(self.tank_frame.felt[w, k], self.real) for k in ti.static(range(4))])
 
     @ti.func
     def kinematics(self, w, time):
         """Pose (Y, Z, φ) of the tank's origin now, its velocity and its acceleration in the earth frame."""
-        return self.hold.kinematics(w)
+        return self.tank_frame.kinematics(w)
 
     @ti.func
     def passage(self, w, t, dt):
         """Pose and velocity in the middle of the step of dt (s) that begins at t (s), and the pose at its end."""
-        return self.hold.passage(w)
+        return self.tank_frame.passage(w)
 
     @ti.func
     def pace(self, w):
@@ -134,12 +135,12 @@ class Ships(Rates):
     def hold_still(self, w, t, step):
         """Prescribed motion before the release: upright before the start, then turned to the initial heel."""
         pose, velocity, acceleration = self.held(w, t)
-        self.hold.feel(w, self.gravity[0], pose, velocity, acceleration, 1.0)
-        if ti.static(self.hold.wet):
+        self.tank_frame.feel(w, self.gravity[0], pose, velocity, acceleration, 1.0)
+        if ti.static(self.tank_frame.wet):
             middle, speed, _ = self.held(w, t + 0.5 * step)
-            self.hold.note_middle(w, middle, speed)
+            self.tank_frame.note_middle(w, middle, speed)
             pose, velocity, acceleration = self.held(w, t + step)
-        self.hold.note(w, pose, velocity, acceleration)
+        self.tank_frame.note(w, pose, velocity, acceleration)
 
     @ti.func
     def held(self, w, t):
@@ -154,19 +155,19 @@ class Ships(Rates):
         return pose, velocity, acceleration
 
     @ti.func
-    def answer(self, w, roll, rate, force):
-        """Note what the matters answer to accelerations of P; returns their load while P is not accelerated."""
+    def added_mass(self, w, roll, rate, force):
+        """Note the matters' added mass about P; returns their load while P is not accelerated."""
         for entry in ti.static(range(9)):
-            self.hold.reply[w, entry] = 0.0
+            self.tank_frame.of_tank[w, entry] = 0.0
         for k in ti.static(range(len(self.loads))):
             if ti.static(self.loads[k].pressed):
-                self.loads[k].add_inertia(w, self.hold.reply)
-        return self.hold.answer(w, roll, rate, force)
+                self.loads[k].sum_added_mass(w, self.tank_frame.of_tank)
+        return self.tank_frame.transform_added_mass(w, roll, rate, force)
 
     @ti.func
-    def aboard(self, w, roll, load):
+    def to_earth(self, w, roll, load):
         """The cargo's force and moment per metre about P in the earth's axes, from those in the tank's."""
         force = turned(load[0], load[1], roll)
-        arm = self.hold.arm(w, roll)
+        arm = self.tank_frame.arm(w, roll)
         moment = load[2] + arm[0] * force[1] - arm[1] * force[0]
         return ti.Vector([force[0], force[1], moment])

@@ -1,4 +1,4 @@
-"""What is known of a ship further, per metre of her length (`motion.afloat`)."""
+"""What is known of a ship further, per metre of her length (`motion.floating_ships`)."""
 
 from solvers.machine.quantity import Quantity
 

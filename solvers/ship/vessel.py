@@ -27,8 +27,8 @@ class Vessel:
     if the ship is free to heave. In calm water it rests at a roll of `rest` (rad), cargo and all. The ship has capsized
     when its roll leaves `limits` (rad), and floods when one of its `openings` (m, hull's frame) is below the local
     water surface. `height` (m) is that of the hull's origin when upright, None: as the ship floats in equilibrium. With
-    a `handover` (s) she takes steps of that length with a load that is extrapolated (`motion.as_k`); None: she answers
-    to the load of each instant (`motion.afloat`).
+    a `handover` (s) she takes steps of that length with a load that is extrapolated (`motion.staggered_ships`); None:
+    she responds to the load of each instant (`motion.floating_ships`).
     """
 
     ship: Ship
@@ -86,7 +86,7 @@ class Vessel:
         return replace(bare, inertia=inertia)
 
     def refuse_light(self, hull: Body, late: np.ndarray) -> None:
-        """Raise Unavailable if a `hull` and water that answers her last acceleration, (3, 3), would drive each other.
+        """Raise Unavailable if a `hull` and water with a lagged added mass (3, 3) would drive each other.
 
         Then an error of her acceleration grows from step to step, by the largest eigenvalue of M⁻¹ A.
         """

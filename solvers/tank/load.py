@@ -16,7 +16,7 @@ from solvers.space.axes import named_turns
 
 @ti.data_oriented
 class Load:
-    """The load of each unit on each of `pieces` pieces, as impulse (N s, N m s) since it was last taken.
+    """The load of each unit on each of `pieces` pieces, as impulse (N s, N m s) since it was last read.
 
     It has a number for each of the `freedoms` of a body: forces along the axes, then moments about those about which
     it can turn. A matrix has as many rows and columns, and `entries` in all, row by row.
@@ -27,14 +27,14 @@ class Load:
     would lag by half a step and drive the sound in water. The impulses so told and those of F differ by ½ (F − F′)
     times the step, which does not add up.
 
-    A matter that is `pressed` answers an acceleration a of the tank's origin (y, z, roll; tank's axes) at once, by the
-    load F − A a. Its present load is F, that of a tank that is not accelerated, and A (about the origin) its `inertia`.
-    One that answers the acceleration of the last step has a `late` inertia, a matrix of each world, which is zero if
-    none is known; the carrier takes it on its own side if the load is `eased`.
+    A matter that `adds_mass` responds to an acceleration a of the tank's origin (y, z, roll; tank's axes) at once, by
+    the load F − A a. Its present load is F, that of a tank that is not accelerated, and A (about the origin) its
+    `added_mass`. One that responds to the acceleration of the last step has a `lagged_mass`, a matrix of each world, which is
+    zero if none is known; the carrier takes it on its own side, under-relaxed, if the load is `relaxed`.
     """
 
-    pressed = eased = False
-    late = None
+    adds_mass = relaxed = False
+    lagged_mass = None
 
     def __init__(
         self,
@@ -45,7 +45,7 @@ class Load:
         every: int = 1,
         axes: int = PLANE,
     ):
-        self.units, self.pieces, self.answered = units, pieces, shares is not None
+        self.units, self.pieces, self.carried = units, pieces, shares is not None
         names = *directions(axes), *named_turns("moment", axes)
         self.freedoms, self.entries = len(names), len(names) ** 2
         room = pieces if units.single else -(-pieces // APART) * APART  # no two units write to one cache line
@@ -56,7 +56,7 @@ class Load:
             return own.reals(each, *(f"{what}_{name}" for name in names), kind=own.exact, kept=kept)
 
         self.impulse, self.noted = declared("impulse", True), declared("noted", False)
-        if self.answered:
+        if self.carried:
             self.stands = every > 1
             self.instant = declared("instant", self.stands)
             if self.stands:
@@ -64,35 +64,37 @@ class Load:
                 (self.known,) = own.integers((units.axis,), "known")  # loads since they were forgotten
             self.shares = own.holding("shares", shares, "world piece", own.exact)
 
-    def answer(self, arrays: Scope) -> None:
-        """Take an inertia of each piece as well."""
-        self.pressed = True
+    def add_mass(self, arrays: Scope) -> None:
+        """Declare an added mass of each piece as well."""
+        self.adds_mass = True
         piece = Axis("piece", self.pieces), Axis("entry", self.entries)
-        (self.inertia,) = arrays.under("load").reals((self.units.axis, *piece), "inertia", kind=self.exact, kept=False)
+        (self.added_mass,) = arrays.under("load").reals(
+            (self.units.axis, *piece), "added_mass", kind=self.exact, kept=False
+        )
 
-    def lag(self, late: np.ndarray, eased: bool) -> None:
-        """Have a `late` inertia (W, freedoms, freedoms), about the tank's origin, per metre of the carrier's length."""
-        self.late, self.eased = late, eased and len(late) > 0
+    def lag(self, mass: np.ndarray, relaxed: bool) -> None:
+        """Have a lagged added mass (W, freedoms, freedoms), about the tank's origin, per metre of the carrier's length."""
+        self.lagged_mass, self.relaxed = mass, relaxed and len(mass) > 0
 
     @ti.func
-    def add_inertia(self, w, matrix: ti.template()):
+    def sum_added_mass(self, w, matrix: ti.template()):
         """Add the matrix A of a world to a row of `matrix`, summed over units and pieces with the shares."""
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             for piece in range(self.pieces):
                 for k in ti.static(range(self.entries)):
-                    matrix[w, k] = matrix[w, k] + self.shares[w, piece] * self.inertia[u, piece, k]
+                    matrix[w, k] = matrix[w, k] + self.shares[w, piece] * self.added_mass[u, piece, k]
 
     def forget(self) -> None:
         """Set all loads to zero."""
-        for field in (*self.impulse, *self.noted, *(self.instant if self.answered else ())):
+        for field in (*self.impulse, *self.noted, *(self.instant if self.carried else ())):
             field.fill(0.0)
-        if self.answered and self.stands:
+        if self.carried and self.stands:
             self.known.fill(0)
 
     @ti.func
     def begin(self, u):
         """Set a unit's present load to zero, before its matter computes a new one."""
-        if ti.static(self.answered):
+        if ti.static(self.carried):
             if ti.static(self.stands):
                 self.known[u] = ti.min(self.known[u] + 1, 2)
             for piece in range(self.pieces):
@@ -110,16 +112,16 @@ class Load:
         for k in ti.static(range(self.freedoms)):
             pushed = ti.cast(load[k], self.exact)
             self.impulse[k][u, piece] = self.impulse[k][u, piece] + pushed * dt
-            if ti.static(self.answered):
+            if ti.static(self.carried):
                 self.instant[k][u, piece] = self.instant[k][u, piece] + pushed
 
     @ti.func
-    def book_answer(self, u, piece, gains, dt):
-        """Add −A a of a unit's inertia on a piece, for an acceleration a of the tank's origin, to what is told."""
+    def book_reaction(self, u, piece, gains, dt):
+        """Add the reaction −A a of a unit's added mass on a piece, for an acceleration a of the tank's origin."""
         for i in ti.static(range(self.freedoms)):
             pushed = ti.cast(0.0, self.exact)
             for j in ti.static(range(self.freedoms)):
-                pushed += self.inertia[u, piece, self.freedoms * i + j] * gains[j]
+                pushed += self.added_mass[u, piece, self.freedoms * i + j] * gains[j]
             self.impulse[i][u, piece] = self.impulse[i][u, piece] - pushed * dt
 
     @ti.func
@@ -151,8 +153,8 @@ class Load:
         return load
 
     @ti.func
-    def take(self, u, piece):
-        """The impulse of a unit on a piece since it was last taken, and clear it."""
+    def read_and_reset(self, u, piece):
+        """The impulse of a unit on a piece since it was last read, and set it to zero."""
         found = ti.Vector([self.impulse[k][u, piece] for k in ti.static(range(self.freedoms))])
         for k in ti.static(range(self.freedoms)):
             self.impulse[k][u, piece] = 0.0

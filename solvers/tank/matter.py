@@ -17,7 +17,7 @@ from solvers.tank.load import Load
 class Matter:
     """The interface of all matters, with the answers of one that has no lists and nothing to say.
 
-    A matter has a `name`, `units`, a `load` on the tank, and the phases of a step: `before` the carrier answers to
+    A matter has a `name`, `units`, a `load` on the tank, and the phases of a step: `before` the carrier responds to
     the load, `between` that and the motion of the particles, and `after`, when these move. If it is
     `paced`, its steps may be longer than the base step, by as many as its `pace` says. If it has neighbour lists, it
     says when these are `stale`, `worn` or `asked` for in part, and rebuilds them (`sort`, `make_lists`). `of_contacts`

@@ -1,4 +1,4 @@
-"""What is known of the tank: how it moves and what loads it (`motion.observer`), and its parts (`walls`).
+"""What is known of the tank: how it moves and what loads it (`motion.sampler`), and its parts (`walls`).
 
 A tank on an axle has further ones (`motion.axle`). Files of quantities import no Taichi, for those who read recordings
 need none.

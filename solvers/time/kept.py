@@ -24,6 +24,7 @@ RENAMED = {  # arrays and rows that earlier versions kept under other names
     "water.forces.work_lately": "water.forces.wall_work_lately",
     "water.continuity.lost": "water.continuity.diffused",
     "water.census.behind": "water.diagnostics.behind",
+    "ship.ease": "ship.relaxed_mass",
 }
 
 

@@ -7,7 +7,7 @@ carried along (m_r) and that swings (m_s), q̈ + ω₁² q = −ẍ.
 import numpy as np
 from scipy.linalg import expm
 
-from solvers.motion.staggered import BETA, BOSSAK, EVEN, GAMMA, SMOOTHING, lagrange
+from solvers.motion.staggered_error import BETA, BOSSAK, EVEN, GAMMA, SMOOTHING, lagrange
 
 OWN, DAMPING, CARRIED, SWINGING, TANK = 6.0, 0.05, 0.02, 0.03, 7.2  # ω₀, ζ, m_r, m_s, ω₁
 

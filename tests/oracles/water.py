@@ -47,7 +47,7 @@ def again(run: Simulation, scene: Scene) -> Simulation:
 
     The numbers of the water's models may differ, too, and with them the step, but where a ship or an axle has it.
     """
-    if run.carrier.answers:
+    if run.carrier.responds:
         assert run.dt < 1.01 * scene.time_step()
     else:
         run.dt, run.longest_step = scene.time_step(), scene.longest_step(1.0)

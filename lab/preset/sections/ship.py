@@ -84,7 +84,7 @@ class Ship:
     freedom: Annotated[Literal[*FREEDOM], Doc("In which directions she is free to move.")] = "sway-heave-roll"
     coupling: Annotated[
         Literal["instant", "staggered"],
-        Doc("Whether she answers to the load of each instant, or takes steps with an extrapolated load (staggered)."),
+        Doc("Whether she responds to the load of each instant, or takes steps with an extrapolated load (staggered)."),
     ] = "instant"
     coupling_step: Annotated[
         float, Unit("s"), Interval(ge=1e-4, le=0.1), Doc('Her step with coupling = "staggered".')

@@ -26,7 +26,7 @@ class SoundSwitch:
     The time step, viscosity, diffusion, τ and all else that follows from the speed of sound change with it; the
     background pressure, that of the softer air, stays. What the air's elastic energy loses is booked as diffused.
 
-    Limits: not with cohesion, which is another equation of state; not where the tank answers to its load, since then
+    Limits: not with cohesion, which is another equation of state; not where the tank responds to its load, since then
     steps are as long as it has them.
 
     Units: p Pa, c m/s, ρ kg/m³.

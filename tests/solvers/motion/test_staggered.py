@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solvers.machine.errors import Unavailable
-from solvers.motion.staggered import BETA, BOSSAK, EVEN, GAMMA, LARGEST, elongation, growth
+from solvers.motion.staggered_error import BETA, BOSSAK, EVEN, GAMMA, LARGEST, elongation, growth
 from solvers.ship.body import Body
 from solvers.ship.motion import Radiation
 from solvers.simulation import Simulation

@@ -8,7 +8,7 @@ import pytest
 
 from solvers.fluid.start.packing import area_of
 from solvers.machine.errors import Unavailable
-from solvers.motion.staggered import growth, lagrange
+from solvers.motion.staggered_error import growth, lagrange
 from solvers.ship.body import Body, bolted
 from solvers.ship.hydrostatics import turned
 from solvers.ship.loads import Floating

@@ -1,9 +1,10 @@
-"""Staggered coupling of a ship with what is in her tanks: how errors grow from step to step.
+"""The error of the staggered coupling of a ship with what is in her tanks: how it grows from step to step.
 
-In the scheme `as_K` (Serván-Camas, Cercós-Pita, Colom-Cobb, García-Espinosa & Souto-Iglesias 2016, section 4) a ship
-takes long steps with a load that is extrapolated from those of the last steps (Lagrange). Her equation of motion is
-weighted after Bossak, (1 − b) M a' + b M a = F*, and the contents follow her in short steps of their own. In
-`motion.afloat` she takes the load of the instant instead, with what of it answers her acceleration on her own side.
+In the scheme of `motion.staggered_ships` (Serván-Camas, Cercós-Pita, Colom-Cobb, García-Espinosa & Souto-Iglesias 2016,
+section 4) a ship takes long steps with a load that is extrapolated from those of the last steps (Lagrange). Her
+equation of motion is weighted after Bossak, (1 − b) M a' + b M a = F*, and the contents follow her in short steps of
+their own. In `motion.floating_ships` she takes the load of the instant instead, with the contents' added mass on her
+own side.
 """
 
 from math import comb, pi
@@ -14,7 +15,7 @@ BOSSAK = -0.1  # b: the source does not say; usual values are −0.3 to 0 (Wood,
 GAMMA = 0.5 - BOSSAK  # of Newmark's velocity: no other is of second order
 BETA = 1.0 / 12.0  # of Newmark's pose: no other keeps periods to fourth order, see `elongation`
 EVEN = 0.25 * (1.0 - BOSSAK) ** 2  # β' of an even average of accelerations
-SMOOTHING = 0.25  # share of the latest acceleration in the smoothed one, see `motion.as_k`
+SMOOTHING = 0.25  # share of the latest acceleration in the smoothed one, see `motion.staggered_ships`
 LARGEST = 2.35  # ω H (rad) up to which an oscillation is stable with these
 POINTS = 5
 
@@ -25,7 +26,7 @@ def lagrange(points: int = POINTS) -> np.ndarray:
 
 
 def growth(ratio: float, points: int = POINTS) -> float:
-    """Largest factor by which an error of the acceleration grows in a step, for contents that answer at once.
+    """Largest factor by which an error of the acceleration grows in a step, for contents whose added mass acts at once.
 
     Contents of `ratio` times the mass of the ship, added mass included, push back with −ratio · M s, where
     s = (1 − b) a' + b a is the acceleration at the end of a step. So its errors obey s' + ratio Σ w_k s_k = 0 whatever

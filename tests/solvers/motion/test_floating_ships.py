@@ -171,7 +171,7 @@ class Run:
             name: getattr(run.carrier, name).to_numpy()
             for name in ("state", "given", "capsized", "flooded", "pose", "body")
         }
-        frame |= {name: getattr(run.carrier.hold, name).to_numpy() for name in ("tank", "felt")}
+        frame |= {name: getattr(run.carrier.tank_frame, name).to_numpy() for name in ("tank", "felt")}
         frame |= {"pose": frame["pose"][:, :3], "tank": frame["tank"][:, :9], "given": frame["given"][:, 0]}
         motion = frame["tank"]
         energy = cargo_energy(run, snapshot, rows, motion)

@@ -1,4 +1,4 @@
-"""What is recorded of a tank as it moves: its pose, and the load of all matters on it."""
+"""The sampler: what is recorded of a tank as it moves, its pose and the load of all matters on it."""
 
 from collections.abc import Sequence
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from solvers.tank.load import Load
 
 
 @ti.data_oriented
-class Observer:
+class Sampler:
     """One row of numbers per world: pose and velocity of the tank, and the mean force on it since the last sample.
 
     The force includes that on fixed grains and parts; its moment is about the tank's origin. `loads` are the loads of
@@ -27,24 +27,24 @@ class Observer:
         self.quantities = tank.SERIES
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
-        own, world = arrays.under("observer"), Axis("world", worlds)
+        own, world = arrays.under("sampler"), Axis("world", worlds)
         (self.rows,) = own.reals((world, Axis("quantity", columns)), "rows", kind=arrays.exact, kept=False)
         parts = world, Axis("piece", self.pieces), Axis("component", 3)
         (self.on_pieces,) = own.reals(parts, "on_pieces", kind=arrays.exact, kept=False)
 
-    def take(self, time: float, since: float) -> dict[str, np.ndarray]:
+    def read_and_reset(self, time: float, since: float) -> dict[str, np.ndarray]:
         """The quantities at `time` (s), `since` (s) after the last sample: (W, *shape) of each by name."""
-        self.observe(time, since)
+        self.sample(time, since)
         return parted(self.rows.to_numpy().astype(float), self.quantities)
 
     @ti.kernel
-    def observe(self, time: ti.f64, since: ti.f64):
+    def sample(self, time: ti.f64, since: ti.f64):
         """Fill the rows, and set the loads' sums to zero."""
         for w in range(self.worlds):
-            self.observe_world(w, time, since)
+            self.sample_world(w, time, since)
 
     @ti.func
-    def observe_world(self, w, time, since):
+    def sample_world(self, w, time, since):
         for piece in range(self.pieces):
             for k in ti.static(range(3)):
                 self.on_pieces[w, piece, k] = 0.0
@@ -52,7 +52,7 @@ class Observer:
         for m in ti.static(range(len(self.loads))):
             for u in range(w * self.loads[m].units.a_world, (w + 1) * self.loads[m].units.a_world):
                 for piece in range(self.pieces):
-                    impulse = self.loads[m].take(u, piece)
+                    impulse = self.loads[m].read_and_reset(u, piece)
                     for k in ti.static(range(3)):
                         mean = impulse[k] / ti.cast(since, self.exact)
                         self.on_pieces[w, piece, k] = self.on_pieces[w, piece, k] + mean

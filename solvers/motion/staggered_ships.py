@@ -1,8 +1,8 @@
-"""A ship that takes long steps with an extrapolated load, as in a published coupling of two programs.
+"""Staggered coupling: a ship takes long steps with an extrapolated load, as published of two programs.
 
-In `as_K` (Serván-Camas, Cercós-Pita, Colom-Cobb, García-Espinosa & Souto-Iglesias 2016, sections 3 and 4) the ship goes
-from t_n to t_(n+1) = t_n + H with the load F* of the contents that a polynomial through the last five gives (Lagrange),
-and the contents follow in short steps of their own on the way between the two poses:
+In this scheme (Serván-Camas, Cercós-Pita, Colom-Cobb, García-Espinosa & Souto-Iglesias 2016, sections 3 and 4) the ship
+goes from t_n to t_(n+1) = t_n + H with the load F* of the contents that a polynomial through the last five gives
+(Lagrange), and the contents follow in short steps of their own on the way between the two poses:
 
     F* = 5 F_n − 10 F_(n−1) + 10 F_(n−2) − 5 F_(n−3) + F_(n−4),
     (1 − b) M a_(n+1) + b M a_n = F(x_(n+1), v_(n+1), t_(n+1)) + F*,
@@ -20,8 +20,8 @@ noise of particles does, and 1/12 does. So contents follow the smoothed
 
 which of such noise have 3 and 4 % of H² a and H a. Else y − x is of H³ and w − v of H² (own derivation).
 
-Limits: unstable with contents that answer at once and have more than some 3 % of the ship's mass, added mass included,
-see `motion.staggered`; it is here to be compared. The memory of radiation goes by the trapezoidal rule.
+Limits: unstable with contents whose added mass acts at once and is more than some 3 % of the ship's mass, added mass
+included, see `motion.staggered_error`; it is here to be compared. The memory of radiation goes by the trapezoidal rule.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ import taichi as ti
 from solvers.machine.state import State
 from solvers.motion.rates import MEMORY, POSE, VELOCITY
 from solvers.motion.ships import Ships
-from solvers.motion.staggered import BETA, BOSSAK, EVEN, GAMMA, POINTS, SMOOTHING, lagrange
+from solvers.motion.staggered_error import BETA, BOSSAK, EVEN, GAMMA, POINTS, SMOOTHING, lagrange
 from solvers.ship.vessel import Vessel
 
 MOST = 60  # iterations
@@ -40,7 +40,7 @@ WEIGHTS = tuple(float(weight) for weight in lagrange())
 
 
 @ti.data_oriented
-class AsK(Ships):
+class StaggeredShips(Ships):
     """Ships whose steps are `every` steps of the contents long."""
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
@@ -61,11 +61,11 @@ class AsK(Ships):
         pose, velocity, acceleration = self.on_the_way(w, since, length)
         force = self.felt(w, pose, velocity, acceleration, load)
         self.given[w, 0] = self.given[w, 0] + step * force.dot(velocity)
-        self.hold.feel(w, self.gravity[0], pose, velocity, acceleration, 1.0)
+        self.tank_frame.feel(w, self.gravity[0], pose, velocity, acceleration, 1.0)
         middle, fast, _ = self.on_the_way(w, since + 0.5 * step, length)
-        self.hold.note_middle(w, middle, fast)
+        self.tank_frame.note_middle(w, middle, fast)
         end, speed, gain = self.on_the_way(w, since + step, length)
-        self.hold.note(w, end, speed, gain)
+        self.tank_frame.note(w, end, speed, gain)
         self.done[w, 0] = self.done[w, 0] + 1
         if not (self.limits[w, 0] < end[2] < self.limits[w, 1]):
             self.capsized[w] = t + step
@@ -73,10 +73,10 @@ class AsK(Ships):
     @ti.func
     def felt(self, w, pose, velocity, acceleration, load):
         """The contents' force and moment about P of a tank that moves so, from their present `load`."""
-        force = self.aboard(w, pose[2], load)
-        if ti.static(self.pressed):
-            force = self.answer(w, pose[2], velocity[2], force)
-            force = force - self.hold.answered(w, acceleration)
+        force = self.to_earth(w, pose[2], load)
+        if ti.static(self.adds_mass):
+            force = self.added_mass(w, pose[2], velocity[2], force)
+            force = force - self.tank_frame.reaction(w, acceleration)
         return force
 
     @ti.func

@@ -1,4 +1,4 @@
-"""How a hold moves with its ship: what is told to the matters in it."""
+"""The tank frame of a ship: how a tank moves with her, as the matters in it feel it."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ def apart(rows: Sequence[Sequence[float]]) -> np.ndarray:
 
 
 @ti.data_oriented
-class Hold:
+class TankFrame:
     """The tank's origin at `places` (W, 2) m from each ship's axis P, in the hull's axes.
 
     `felt` is the frame that grains feel; `tank` the motion of the tank's origin at the end of the last step, and with
@@ -36,7 +36,7 @@ class Hold:
         # Where it stands while matters settle, before the ship floats: water notices every jump of the tank
         standing = apart([[*place, *[0.0] * 7] for place in places])
         self.tank = own.holding("tank", standing, "world number", own.exact, kept=True)
-        self.reply, self.seen = own.reals(row, "reply", "seen", kind=own.exact, kept=False)
+        self.of_tank, self.of_ship = own.reals(row, "added_to_tank", "added_to_ship", kind=own.exact, kept=False)
 
     @ti.func
     def arm(self, w, roll):
@@ -44,11 +44,11 @@ class Hold:
         return turned(self.place[w, 0], self.place[w, 1], roll)
 
     @ti.func
-    def answer(self, w, roll, rate, force):
-        """Turn what matters answer to the tank's acceleration, `reply`, into an inertia about P, `seen`.
+    def transform_added_mass(self, w, roll, rate, force):
+        """Transform the added mass that matters have for the tank, `of_tank`, into that about P, `of_ship`.
 
         Both are matrices (3, 3) row by row, the first about the tank's origin in its axes, the second in the earth's.
-        Returns the load `force` about P with what the matters answer to the rotation alone. Written out in numbers:
+        Returns the load `force` about P with their reaction to the rotation alone. Written out in numbers:
         matrices may be real vectors here, which cannot be transposed.
         """
         c, s, arm, square = ti.cos(roll), ti.sin(roll), self.arm(w, roll), rate * rate
@@ -59,22 +59,22 @@ class Hold:
                 total = 0.0 * c
                 for m in ti.static(range(3)):
                     for n in ti.static(range(3)):
-                        total += way[3 * m + i] * self.reply[w, 3 * m + n] * way[3 * n + j]
-                self.seen[w, 3 * i + j] = total
+                        total += way[3 * m + i] * self.of_tank[w, 3 * m + n] * way[3 * n + j]
+                self.of_ship[w, 3 * i + j] = total
         found = force
         for i in ti.static(range(3)):
             for m in ti.static(range(3)):
-                turned_by = self.reply[w, 3 * m] * self.place[w, 0] + self.reply[w, 3 * m + 1] * self.place[w, 1]
+                turned_by = self.of_tank[w, 3 * m] * self.place[w, 0] + self.of_tank[w, 3 * m + 1] * self.place[w, 1]
                 found[i] = found[i] + square * way[3 * m + i] * turned_by
         return found
 
     @ti.func
-    def answered(self, w, acceleration):
-        """What matters push against an acceleration of P (m/s², rad/s²), by the inertia `seen`."""
+    def reaction(self, w, acceleration):
+        """What matters push against an acceleration of P (m/s², rad/s²), by their added mass `of_ship`."""
         found = acceleration
         for i in ti.static(range(3)):
-            pushed = self.seen[w, 3 * i] * acceleration[0] + self.seen[w, 3 * i + 1] * acceleration[1]
-            found[i] = pushed + self.seen[w, 3 * i + 2] * acceleration[2]
+            pushed = self.of_ship[w, 3 * i] * acceleration[0] + self.of_ship[w, 3 * i + 1] * acceleration[1]
+            found[i] = pushed + self.of_ship[w, 3 * i + 2] * acceleration[2]
         return found
 
     @ti.func

@@ -28,15 +28,15 @@ from solvers.tank.load import Load
 
 STAGES = 4  # of the Runge–Kutta method
 
-# Of the layer's answer A, on the ship's own side (M), if that is asked for. With a share θ errors of her acceleration
-# shrink from step to step by (1 − θ) A/(M + θ A): for θ ≤ 1/2 not in all cases, and with θ = 1 the lag that damps the
-# water's sound is gone, so that hull and water ring.
-EASED = 0.75
+# Under-relaxation of the walls' lagged added mass A, on the ship's own side (M), if that is wanted. With a share θ
+# errors of her acceleration shrink from step to step by (1 − θ) A/(M + θ A): for θ ≤ 1/2 not in all cases, and with θ =
+# 1 the lag that damps the water's sound is gone, so that hull and water ring.
+RELAXATION = 0.75
 
 
 @ti.data_oriented
-class Afloat(Ships):
-    """Ships that answer at each step to the load of its instant."""
+class FloatingShips(Ships):
+    """Ships that respond at each step to the load of its instant."""
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
         super().__init__(arrays, vessels, gravity, every, wet)
@@ -47,8 +47,8 @@ class Afloat(Ships):
     def bear(self, loads: Sequence[Load]) -> None:
         """Respond to these loads from now on."""
         super().bear(loads)
-        if self.eased:
-            self.ease = self._table("ease", EASED * self.late.reshape(-1, 9), "entry")
+        if self.relaxed:
+            self.relaxed_mass = self._table("relaxed_mass", RELAXATION * self.lagged_mass.reshape(-1, 9), "entry")
 
     @ti.func
     def move(self, w, t, step, kick, load):
@@ -59,7 +59,7 @@ class Afloat(Ships):
             for k in ti.static(range(3)):
                 self.velocity[w, k] = 0.0
         pose, before = self.vector(self.pose, w), self.vector(self.velocity, w)
-        force = self.aboard(w, pose[2], load)
+        force = self.to_earth(w, pose[2], load)
         share = ti.cast(1.0, self.exact)
         steady, mean = self.vector(self.steady, w), self.vector(self.mean, w)
         if self.done[w, 0] % self.every[0] == 0:
@@ -73,42 +73,42 @@ class Afloat(Ships):
                 steady = 0.5 * (steady + self.vector(self.steady_before, w))
                 mean = 0.5 * (mean + self.vector(self.mean_before, w))
         acceleration = share * (steady + self.accelerated(w, pose[2], force - mean))
-        if ti.static(self.pressed or self.eased):
-            if ti.static(self.pressed):
+        if ti.static(self.adds_mass or self.relaxed):
+            if ti.static(self.adds_mass):
                 rate = before[2] + 0.5 * step * self.last[w, 2]
-                force = self.answer(w, pose[2], rate, force)
+                force = self.added_mass(w, pose[2], rate, force)
             else:
                 force = self.expect(w, pose[2], force)
-            right = force - self.hold.answered(w, steady) - mean
+            right = force - self.tank_frame.reaction(w, steady) - mean
             more = self.solved(w, self.inertia(w, pose[2]), right, True)
             acceleration = share * (steady + more)
-            force = force - self.hold.answered(w, steady + more)
+            force = force - self.tank_frame.reaction(w, steady + more)
         velocity = before + 0.5 * step * acceleration
         if first:
             velocity = before
-        self.hold.feel(w, self.gravity[0], pose, velocity, acceleration, step / kick)
+        self.tank_frame.feel(w, self.gravity[0], pose, velocity, acceleration, step / kick)
         after = before + step * acceleration
         self.given[w, 0] = self.given[w, 0] + step * share * force.dot(0.5 * (before + after))
         self.put(self.velocity, w, after)
         self.put(self.last, w, acceleration / share)
         self.put(self.load, w, self.vector(self.load, w) + force)
         whole = after + self.vector(self.drift, w)
-        self.hold.note_middle(w, pose + 0.5 * step * whole, whole)
+        self.tank_frame.note_middle(w, pose + 0.5 * step * whole, whole)
         pose = pose + step * whole
         self.put(self.pose, w, pose)
         self.done[w, 0] = self.done[w, 0] + 1
-        self.hold.note(w, pose, after + 0.5 * step * acceleration / share, acceleration / share)
+        self.tank_frame.note(w, pose, after + 0.5 * step * acceleration / share, acceleration / share)
         if not (self.limits[w, 0] < pose[2] < self.limits[w, 1]):
             self.capsized[w] = t + step
 
     @ti.func
     def expect(self, w, roll, force):
-        """Add to a load the share of the layer's answer to the last acceleration that is on the ship's own side."""
+        """Add to a load the reaction of the lagged added mass that is on the ship's side to the last acceleration."""
         zero = ti.cast(0.0, self.exact)
         for entry in ti.static(range(9)):
-            self.hold.reply[w, entry] = self.ease[w, entry]
-        found = self.hold.answer(w, roll, zero, force)
-        return found + self.hold.answered(w, self.vector(self.last, w))
+            self.tank_frame.of_tank[w, entry] = self.relaxed_mass[w, entry]
+        found = self.tank_frame.transform_added_mass(w, roll, zero, force)
+        return found + self.tank_frame.reaction(w, self.vector(self.last, w))
 
     @ti.func
     def begin_interval(self, w, t, step, first, pose, velocity, force):
