@@ -61,7 +61,7 @@ class Simulation:
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
-        self.stretch = max(stretch, *(matter.soft_stride for matter in scene.matters), 1) if alone else 1
+        self.stretch = max(stretch, *(matter.soft_multiple for matter in scene.matters), 1) if alone else 1
         self.vectors = min((matter.lanes(scene.precision) for matter in scene.matters), default=wide.lanes())
         self.steps, self.room, self.among, self.skin = 0, 1, worlds, skin  # `among`: worlds at the start
         # Short kernels; and of discs beside water, which are 1.4 times as fast so, though they compile twice as long
@@ -87,7 +87,7 @@ class Simulation:
         self.carrier.bear(loads)
         self.clock = Clock(arrays, setting.units(max((matter.in_bands for matter in scene.matters), default=0)))
         sequence = Sequence(matters, self.carrier)
-        self.beat, self.wide = sequence.beat, any(matter.wide for matter in matters)
+        self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
         self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, loads)
         arrays.finish()
@@ -139,7 +139,7 @@ class Simulation:
 
     def whole(self, steps: int) -> int:
         """The largest number of base steps, up to `steps`, that cuts no longer step; at least one such step."""
-        return (least := lcm(self.stretch, self.beat)) * max(1, steps // least)
+        return (least := lcm(self.stretch, self.exchange_interval)) * max(1, steps // least)
 
     def advance(self, steps: int) -> None:
         """Advance every world by `steps` base steps, as many as `whole` says where matters have steps of their own.
@@ -187,11 +187,11 @@ class Simulation:
         start = [(field, field.to_numpy()) for matter in self.matters.values() for field in matter.fields()]
         of_contacts = [name for matter in self.matters.values() for name in matter.of_contacts]
         try:
-            self.advance(self.beat)
+            self.advance(self.exchange_interval)
             load = self._observe()
             for field, values in start:
                 field.from_numpy(values)
-            self.steps -= self.beat
+            self.steps -= self.exchange_interval
             touching = self._observe()
         finally:
             self.restore(before)
@@ -307,7 +307,7 @@ class Simulation:
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned of the same scene, on whatever processor. Raises ValueError for any other."""
         state = kept.renamed(state)
-        anew = kept.take(self, state)
+        anew = kept.restore_numbers(self, state)
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
         if anew:
             self.arrays.release()

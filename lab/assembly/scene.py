@@ -27,7 +27,9 @@ from solvers.ship.vessel import Vessel
 OTHERS = {"water": fluid_of}
 # A step twice the derived one suits closing speeds of a 32nd; four times is more than the Rayleigh time ever allows.
 LONGEST_STRIDE = 2
-LARGEST_POWER = 5  # of two: of more base steps strides need not be powers of two (`solvers.time.sequence.BAR`)
+LARGEST_POWER = (
+    5  # of two: of more base steps multiples need not be powers of two (`solvers.time.sequence.CHECK_EVERY`)
+)
 
 
 @known_collisions()
@@ -86,7 +88,7 @@ def _base_share(scene: Scene, times: float) -> float:
     return share_to_lengthen(scene.step_limits()[0].step, scene.step_limits(SLOWEST)[0].step, times)
 
 
-def _soft_stride(preset: Preset, scene: Scene, wanted: float) -> int:
+def _soft_multiple(preset: Preset, scene: Scene, wanted: float) -> int:
     """How many steps of the water are one while its air is soft: the power of two with the fewest steps in the run.
 
     wanted: the longest step (s) under stiff air.
@@ -96,9 +98,9 @@ def _soft_stride(preset: Preset, scene: Scene, wanted: float) -> int:
     interval, early = 1.0 / preset.record.series_rate, scene.fluid.water.air.stiff_from
     longest = soft_limit(scene, LEVELS[preset.run.accuracy].longer_steps)
 
-    def steps(stride: int) -> float:
-        a_row = ceil(interval / min(longest, stride * wanted) - 1e-9)  # of long ones, between two rows of the series
-        return a_row * (early + stride * (preset.duration - early))
+    def steps(multiple: int) -> float:
+        a_row = ceil(interval / min(longest, multiple * wanted) - 1e-9)  # of long ones, between two rows of the series
+        return a_row * (early + multiple * (preset.duration - early))
 
     return min((2**k for k in range(LARGEST_POWER + 1)), key=steps)
 
@@ -113,8 +115,8 @@ def _step(preset: Preset, scene: Scene) -> float:
             scene.grains.base_share = share
         wanted = share * usual
         if scene.fluid and scene.fluid.water.air and scene.fluid.water.air.stiff_from > 0.0:
-            longest = _soft_stride(preset, scene, wanted)
-            scene.matters = scene.holding(replace(scene.fluid, soft_stride=longest)).matters
+            longest = _soft_multiple(preset, scene, wanted)
+            scene.matters = scene.holding(replace(scene.fluid, soft_multiple=longest)).matters
             wanted = min(wanted, soft_limit(scene, LEVELS[run.accuracy].longer_steps) / longest)
     elif limits:
         check_forced(wanted, limits, usual, run.force_step)

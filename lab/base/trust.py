@@ -129,9 +129,9 @@ def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> Non
 
     The simulation itself refuses invalid indices in its contact lists (`State.write`).
     """
-    from solvers.time.kept import told_by  # loads Taichi, which a recording does not need
+    from solvers.time.kept import numbers_in  # loads Taichi, which a recording does not need
 
-    numbers = told_by(state)
+    numbers = numbers_in(state)
     room = numbers["room"]
     counts = [number for name, number in numbers.items() if name != "unkicked"]  # that is negative after settling
     if min(counts) < 0 or not 1 <= room <= MOST_ROOM or room & (room - 1):

@@ -235,7 +235,7 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
 def _steps(scene, duration: float) -> float:
     """How many steps a duration (s) takes, long ones of soft air counted as one."""
     steps = duration / scene.step
-    return steps_of_water(scene, round(steps)) if scene.fluid and scene.fluid.soft_stride > 1 else steps
+    return steps_of_water(scene, round(steps)) if scene.fluid and scene.fluid.soft_multiple > 1 else steps
 
 
 def _stepping(duration: float, preset, scene) -> float:

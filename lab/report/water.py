@@ -134,8 +134,8 @@ def in_tank(recording: Recording) -> Iterator[str]:
         yield f"over it {recording.air_volume.shape[1]} particles of air, as far apart"
     scene = _scene(preset)
     yield f"{_steps(recording, scene)} steps of {show(recording.step, 's')}"
-    if scene and scene.fluid.soft_stride > 1:
-        yield f"longer steps while the air is soft: {soft_step(scene, scene.fluid.soft_stride)}"
+    if scene and scene.fluid.soft_multiple > 1:
+        yield f"longer steps while the air is soft: {soft_step(scene, scene.fluid.soft_multiple)}"
     limits = scene.step_limits() if scene else []
     yield from (f"limit of the step, {show(limit.step, 's')}: {limit.reason}" for limit in limits)
     if preset.water.scheme != "lab":
@@ -216,17 +216,17 @@ def _air(scene: Scene) -> str:
     return text
 
 
-def soft_step(scene: Scene, stride: int) -> str:
+def soft_step(scene: Scene, multiple: int) -> str:
     """The step while the air is soft, of so many base steps, and until when that is."""
     until = show(stiff_step(scene) * scene.step, "s")
-    return f"{show(stride * scene.step, 's')} until {until}" + f", {stride} steps in one" * (stride > 1)
+    return f"{show(multiple * scene.step, 's')} until {until}" + f", {multiple} steps in one" * (multiple > 1)
 
 
 def _steps(recording: Recording, scene: Scene | None) -> int:
     """How many steps the water has taken; long ones of soft air are one."""
     time = recording.series["time"]
     steps = round(float(time[-1]) / recording.step) if len(time) else 0
-    return steps_of_water(scene, steps) if scene and scene.fluid.soft_stride > 1 else steps
+    return steps_of_water(scene, steps) if scene and scene.fluid.soft_multiple > 1 else steps
 
 
 def _scene(preset: Preset) -> Scene | None:

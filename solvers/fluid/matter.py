@@ -33,8 +33,8 @@ from solvers.motion.carrier import per_slab
 from solvers.motion.poses import Poses
 from solvers.ship.body import Body, frozen
 from solvers.tank.matter import Matter
-from solvers.tank.pace import Pace
 from solvers.tank.setting import Setting
+from solvers.tank.substeps import Substeps
 
 
 @ti.data_oriented
@@ -71,7 +71,7 @@ class WaterMatter(Matter):
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, slots, layers.tanks, of_parts))
         self.bodies.join(arrays, p, self.order, ranges, self.poses, units)
         self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, setting.room)
-        self.long = pace = Pace(arrays.under("water"), self.lists, fluid.pace)
+        self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.pace)
         context = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
         tangential = TangentialCorrection(arrays, context, layers, slots, scene.tanks)
         self.extrapolation = Extrapolation(arrays, context, tangential)
@@ -79,7 +79,7 @@ class WaterMatter(Matter):
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, setting.stretch)
         self.paced = self.sound_switch.paced
         self.continuity, self.vent = Continuity(arrays, context, self.forces), OutflowVent(arrays, context, water.air)
-        self.mover = Mover(arrays, context, self.extrapolation, self.vent, self.forces.voids, pace)
+        self.mover = Mover(arrays, context, self.extrapolation, self.vent, self.forces.voids, substeps)
         probes = [slots[slot] + p.fluid_blocks * lanes for slot in layers.probes]
         self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, layers.open)
         pool = Pool.of(scene, setting.walls, self.order)
@@ -88,10 +88,10 @@ class WaterMatter(Matter):
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * fluid.particles["volume"].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
-        self.before, self.between = pace.first(self._before()), pace.last([Phase(self.note_passage)])
+        self.before, self.between = substeps.first(self._before()), substeps.last([Phase(self.note_passage)])
         correction = [DivergenceCorrection(arrays, context, layers, slots).correct] if self.continuity.corrects else []
         acts = self.mover.kick, *correction, self.continuity.continuity_pass, self.finish
-        self.after = pace.last(Phase(act, units) for act in acts)
+        self.after = substeps.last(Phase(act, units) for act in acts)
 
     def _before(self) -> tuple[Phase, ...]:
         return (
@@ -121,7 +121,7 @@ class WaterMatter(Matter):
     def note_poses(self, w, t, kick, dt):
         """Note how the tank of a world and the parts in it move as the step begins."""
         self.poses.note_start(w, t, dt)
-        self.long.note(w, kick)
+        self.substeps.note(w, kick)
         if ti.static(self.bodies.count > 0):
             self.bodies.note(w, t, dt)
 
@@ -164,20 +164,20 @@ class WaterMatter(Matter):
 
     @ti.func
     def sort(self, w):
-        """Sort the particles of a world, if its own lists are due."""
-        self.long.sort(w)
+        """Sort the particles of a world, if its own lists are to be rebuilt."""
+        self.substeps.sort(w)
 
     @ti.func
     def make_lists(self, u, t, dt, whole):
         """List the neighbours of a unit anew; False where they do not fit."""
         fits = True
-        if whole and self.long.rebuilds(u):
+        if whole and self.substeps.rebuilds(u):
             fits = self.lists.rebuild(u)
         return fits
 
     @ti.func
     def pace(self, w):
-        """Largest stride of a world, in base steps: more than 1 while its air is soft."""
+        """The largest multiple of a world: more than 1 while its air is soft."""
         return self.sound_switch.pace()
 
     @property

@@ -11,8 +11,8 @@ from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
-from solvers.tank.pace import Pace
 from solvers.tank.pieces import AT_END
+from solvers.tank.substeps import Substeps
 
 
 @ti.data_oriented
@@ -32,12 +32,12 @@ class Mover:
         walls: Extrapolation,
         vent: OutflowVent,
         voids: VoidIndicator,
-        pace: Pace,
+        substeps: Substeps,
     ):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
         self.walls, self.bodies, self.vent, self.voids = walls, context.lists.bodies, vent, voids
-        self.pace = pace
+        self.substeps = substeps
         own = arrays.under("water.mover")
         (self.fastest,) = own.reals((context.units.axis,), "fastest")
         (self.deviation,) = own.reals((context.units.axis,), "deviation", kept=False)
@@ -53,7 +53,7 @@ class Mover:
         p, c = self.particles, self.constants
         w = self.units.world(u)
         pull = [ti.cast(self.poses.felt[a][w], p.real) for a in ti.static(range(p.axes))]
-        during = self.pace.kick(w, kick)
+        during = self.substeps.kick(w, kick)
         first, end = self.ranges.fluid(u)
         farthest = p.zeros()
         for b in range(first, end):

@@ -83,7 +83,7 @@ def soft_limit(scene, longer: float) -> float:
 def stiff_step(scene) -> int:
     """The base step at which the air of a scene becomes stiff: a whole number of the long ones before."""
     fluid = scene.fluid
-    return fluid.soft_stride * max(1, round(fluid.water.air.stiff_from / scene.time_step()) // fluid.soft_stride)
+    return fluid.soft_multiple * max(1, round(fluid.water.air.stiff_from / scene.time_step()) // fluid.soft_multiple)
 
 
 def steps_of_water(scene, steps: int) -> int:
@@ -91,8 +91,8 @@ def steps_of_water(scene, steps: int) -> int:
     fluid = scene.fluid
     if fluid is None:
         return steps
-    soft = min(steps, stiff_step(scene)) if fluid.soft_stride > 1 else 0
-    return soft // fluid.soft_stride + (steps - soft) // fluid.pace
+    soft = min(steps, stiff_step(scene)) if fluid.soft_multiple > 1 else 0
+    return soft // fluid.soft_multiple + (steps - soft) // fluid.pace
 
 
 def of_air(water: Water) -> Water:

@@ -17,7 +17,7 @@ class Phase:
     run units side by side and phases one after another, so a phase acting on one unit must not write what other units
     read in the same phase. `units` is None for a phase that acts on whole worlds.
 
-    The pace of a phase is one call `every` few base steps, over as many times dt and `kick`: in the first of them, or
+    A phase may be called once `every` few base steps, over as many times dt and `kick`: in the first of them, or
     with `last` in the last one.
     """
 
@@ -27,7 +27,7 @@ class Phase:
     last: bool = False
 
     @property
-    def due(self) -> int:
+    def turn(self) -> int:
         """The base step in which it is called, of `every` few."""
         return self.every - 1 if self.last else 0
 

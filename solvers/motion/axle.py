@@ -147,7 +147,7 @@ class OnAxle:
 
     @ti.func
     def pace(self, w):
-        """Largest stride in base steps."""
+        """The largest multiple of the base step."""
         return 1
 
     @ti.func

@@ -130,7 +130,7 @@ class Prescribed:
 
     @ti.func
     def pace(self, w):
-        """Largest stride in base steps: no limit."""
+        """The largest multiple of the base step: no limit."""
         return ANY
 
     @ti.func

@@ -109,7 +109,7 @@ class Ships(Rates):
 
     @ti.func
     def pace(self, w):
-        """Largest stride in base steps."""
+        """The largest multiple of the base step."""
         return 1
 
     @ti.func

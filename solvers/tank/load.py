@@ -29,8 +29,8 @@ class Load:
 
     A matter that `adds_mass` responds to an acceleration a of the tank's origin (y, z, roll; tank's axes) at once, by
     the load F − A a. Its present load is F, that of a tank that is not accelerated, and A (about the origin) its
-    `added_mass`. One that responds to the acceleration of the last step has a `lagged_mass`, a matrix of each world, which is
-    zero if none is known; the carrier takes it on its own side, under-relaxed, if the load is `relaxed`.
+    `added_mass`. One that responds to the acceleration of the last step has a `lagged_mass`, a matrix of each world,
+    which is zero if none is known; the carrier takes it on its own side, under-relaxed, if the load is `relaxed`.
     """
 
     adds_mass = relaxed = False
@@ -73,7 +73,7 @@ class Load:
         )
 
     def lag(self, mass: np.ndarray, relaxed: bool) -> None:
-        """Have a lagged added mass (W, freedoms, freedoms), about the tank's origin, per metre of the carrier's length."""
+        """Have a lagged added mass (W, freedoms, freedoms) about the tank's origin, a metre of the carrier's length."""
         self.lagged_mass, self.relaxed = mass, relaxed and len(mass) > 0
 
     @ti.func

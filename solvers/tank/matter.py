@@ -127,7 +127,7 @@ class Matter:
 
     @ti.func
     def pace(self, w):
-        """Largest stride of a world, in base steps."""
+        """The largest multiple of the base step that a world allows."""
         return 1
 
     @ti.func

@@ -10,6 +10,6 @@ def up_to_change(run, target: int) -> int:
     for matter in run.matters.values() if run.origin == 0.0 else ():
         if run.steps >= matter.changes:
             matter.change()
-            run.clock.stride.fill(1)
+            run.clock.multiple.fill(1)
         target = min(target, matter.changes)
     return target

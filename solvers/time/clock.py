@@ -12,7 +12,7 @@ from solvers.time.watch import RUNNING
 class Clock:
     """Base steps done, `step`, and `status`, a constant of `solvers.time.watch`, each (W,).
 
-    A world's step is `stride` base steps long, and its previous one was `before`, 0 if there was none since the
+    A world's step is a `multiple` of the base step, and its previous one was `before`, 0 if there was none since the
     particles were launched.
 
     Bands synchronise by `says` (units,) and `arrived` (W,). The per-grain schedule reads `fastest` (W,) m/s, the
@@ -24,7 +24,7 @@ class Clock:
         self.units, self.worlds, self.real = units, units.worlds, arrays.real
         own, world = arrays.under("clock"), (Axis("world", units.worlds),)
         self.step, self.status, self.arrived = own.integers(world, "step", "status", "arrived")
-        self.stride, self.before = own.integers(world, "stride", "before")
+        self.multiple, self.before = own.integers(world, "multiple", "before")
         (self.says,) = own.integers((units.axis,), "says", kept=False)
         self.fastest, self.farthest, self.pushed = own.reals(world, "fastest", "farthest", "pushed", kept=False)
         self.frame = own.reals(world, *(f"frame.{k}" for k in range(4)), kept=False)
@@ -32,7 +32,7 @@ class Clock:
     def launch(self) -> None:
         """Note that the particles were placed or launched, so that their next step is the first."""
         self.before.fill(0)
-        self.stride.fill(1)
+        self.multiple.fill(1)
 
     def running(self) -> np.ndarray:
         """Which worlds are running, (W,)."""

@@ -25,6 +25,7 @@ RENAMED = {  # arrays and rows that earlier versions kept under other names
     "water.continuity.lost": "water.continuity.diffused",
     "water.census.behind": "water.diagnostics.behind",
     "ship.ease": "ship.relaxed_mass",
+    "clock.stride": "clock.multiple",
 }
 
 
@@ -44,8 +45,8 @@ def axes_of(run) -> dict[str, Axes]:
     return {name: () for name in state_of(run)}
 
 
-def told_by(state: Mapping[str, np.ndarray]) -> dict[str, int]:
-    """The numbers that a state tells; of those without names the last ones may be missing. Raises ValueError."""
+def numbers_in(state: Mapping[str, np.ndarray]) -> dict[str, int]:
+    """The numbers in a state; of those without names the last ones may be missing. Raises ValueError."""
     if "numbers" in state:
         found = dict(zip(ONCE, state["numbers"], strict=False))
     else:
@@ -60,21 +61,21 @@ def renamed(state: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {RENAMED.get(name, name): values for name, values in state.items()}
 
 
-def take(run, state: Mapping[str, np.ndarray]) -> bool:
+def restore_numbers(run, state: Mapping[str, np.ndarray]) -> bool:
     """Give a run the numbers of a state; returns whether its arrays are to be made anew. Raises ValueError.
 
-    In a state that tells them without names no matter beside another one is on real vectors.
+    In a state that has them without names no matter beside another one is on real vectors.
     """
     before = numbers_of(run)
-    told = before | told_by(state)
+    numbers = before | numbers_in(state)
     if "numbers" in state and len(run.matters) > 1:
-        told["vectors"] = 0
+        numbers["vectors"] = 0
     if run.scene.grains and run.scene.grains.shapes:
-        told["vectors"] = told_of_outlines(told["vectors"])
-    check_cut(told["units"], told["schedule"], told["vectors"], moved(run.scene))
+        numbers["vectors"] = told_of_outlines(numbers["vectors"])
+    check_cut(numbers["units"], numbers["schedule"], numbers["vectors"], moved(run.scene))
     for name in PLAIN:
-        setattr(run, name, told[name])
-    anew = any(told[name] != before[name] for name in OF_ARRAYS)
+        setattr(run, name, numbers[name])
+    anew = any(numbers[name] != before[name] for name in OF_ARRAYS)
     if anew:
-        run.units_a_world, run.schedule_name = told["units"], list(SCHEDULES)[told["schedule"]]
+        run.units_a_world, run.schedule_name = numbers["units"], list(SCHEDULES)[numbers["schedule"]]
     return anew

@@ -7,7 +7,7 @@ import taichi as ti
 
 from solvers.machine.phase import Phase
 
-BAR = 64  # base steps between two looks whether steps may be longer
+CHECK_EVERY = 64  # base steps between two checks whether steps may be longer
 
 
 @ti.data_oriented
@@ -16,12 +16,12 @@ class Sequence:
 
     A step of a world at time t (s) is: every phase of `before`, in which matters compute their forces and book those on
     the tank; the carrier's, which responds to that load; every phase of `between`, in which matters note how the tank
-    will move; the carrier's frame; every phase of `after`, in which matters move. A matter with a longer pace
+    will move; the carrier's frame; every phase of `after`, in which matters move. A matter whose steps are longer
     (`Phase.every`) computes its forces in the first of a few steps and moves in the last one, once it is known how the
     tank has moved through all of them; its load stands in between (`Load`).
-    A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
+    A step is a `multiple` of the base step, which changes only when all lists are rebuilt, to the least that any
     matter or the carrier allows (`pace`), and never overshoots the target. Since a quiet world seldom rebuilds its
-    lists, it is asked every BAR base steps whether it may take longer ones. What a matter must offer is in
+    lists, it is checked every CHECK_EVERY base steps whether it may take longer ones. What a matter must offer is in
     `solvers.tank.matter`.
     """
 
@@ -34,58 +34,58 @@ class Sequence:
         self.paced = alike and carrier.paced and all(matter.paced for matter in matters)  # may any step be longer
 
     @property
-    def beat(self) -> int:
-        """Base steps after which all phases have acted as often as their pace says."""
+    def exchange_interval(self) -> int:
+        """Base steps after which all matters have acted and exchanged their loads with the carrier."""
         return lcm(*(phase.every for phase in (*self.before, *self.after)))
 
     @ti.func
     def begin(self, k: ti.template(), u, step, t, kick, dt):
-        """Run phase k of `before` on unit or world u at base step `step`, if it is due."""
+        """Run phase k of `before` on unit or world u at base step `step`, if it is its turn."""
         if ti.static(self.before[k].every == 1):
             self.before[k].act(u, t, kick, dt)
-        elif step % self.before[k].every == self.before[k].due:
+        elif step % self.before[k].every == self.before[k].turn:
             self.before[k].act(u, t, self.before[k].every * kick, self.before[k].every * dt)
 
     @ti.func
     def end(self, k: ti.template(), u, step, frame: ti.template(), kick, dt):
-        """Run phase k of `after` on unit or world u, if it is due; returns whether the state is sound."""
+        """Run phase k of `after` on unit or world u, if it is its turn; returns whether the state is sound."""
         sound = True
         if ti.static(self.after[k].every == 1):
             sound = self.after[k].act(u, frame, kick, dt)
-        elif step % self.after[k].every == self.after[k].due:
+        elif step % self.after[k].every == self.after[k].turn:
             sound = self.after[k].act(u, frame, self.after[k].every * kick, self.after[k].every * dt)
         return sound
 
     @ti.func
-    def stride(self, w, step, due):
-        """Stride of a world's next steps from base step `step` on, in base steps, at most `due`.
+    def multiple(self, w, step, left):
+        """How many base steps a world's next steps are long from base step `step` on, at most the `left` ones.
 
         A short one is a power of two that divides `step`, so that it does not depend on where a run is looked at.
         """
-        stride = ti.min(due, self.pace(w))
-        if stride < BAR:
-            longest, stride = stride, 1
-            while 2 * stride <= longest and step % (2 * stride) == 0:
-                stride *= 2
-        return stride
+        multiple = ti.min(left, self.pace(w))
+        if multiple < CHECK_EVERY:
+            longest, multiple = multiple, 1
+            while 2 * multiple <= longest and step % (2 * multiple) == 0:
+                multiple *= 2
+        return multiple
 
     @ti.func
-    def dawdles(self, w, step, due, stride):
-        """Whether a world takes shorter steps than it may; looked at every BAR base steps."""
+    def may_lengthen(self, w, step, left, multiple):
+        """Whether a world takes shorter steps than it may; checked every CHECK_EVERY base steps."""
         found = False
         if ti.static(self.paced):  # noqa: SIM102 (compiled only where steps may be longer)
-            if step % BAR == 0 and due > 0:
-                found = self.stride(w, step, due) > stride
+            if step % CHECK_EVERY == 0 and left > 0:
+                found = self.multiple(w, step, left) > multiple
         return found
 
     @ti.func
-    def rushes(self, w, stride):
-        """Whether a world takes longer steps than it may now; looked at when its lists are."""
-        return stride > self.pace(w)
+    def must_shorten(self, w, multiple):
+        """Whether a world takes longer steps than it may now; checked when its lists are."""
+        return multiple > self.pace(w)
 
     @ti.func
     def pace(self, w):
-        """Base steps that a step of a world may take: the least that any matter or the carrier allows."""
+        """The largest multiple of a world: the least that any matter or the carrier allows."""
         allowed = self.carrier.pace(w)
         for k in ti.static(range(len(self.matters))):
             allowed = ti.min(allowed, self.matters[k].pace(w))

@@ -13,7 +13,7 @@ LOOK = 0.01  # s, between two looks
 def settle(run, rest: float, limit: float, tell: Callable[[float], None]) -> bool:
     """Let the matters of a `solvers.simulation.Simulation` settle, as its `settle` says."""
     run.origin = AT_REST
-    look = run.beat * max(1, round(LOOK / (run.beat * run.dt)))
+    look = run.exchange_interval * max(1, round(LOOK / (run.exchange_interval * run.dt)))
     quiet = np.zeros(run.scene.worlds, dtype=int)
     while np.any(quiet < 2) and run.steps * run.dt < limit:
         run.advance(look)

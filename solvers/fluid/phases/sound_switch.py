@@ -36,30 +36,30 @@ class SoundSwitch:
         self.particles, self.constants = particles, constants
         self.soft, self.stiff = scene.fluid.water.softened, scene.fluid.water
         self.acts, self.now = self.soft is not self.stiff, self.soft
-        self.due, self.stretch = stiff_step(scene) if self.acts else NEVER, stretch
+        self.when, self.stretch = stiff_step(scene) if self.acts else NEVER, stretch
         self.paced = self.acts and stretch > 1
         if self.paced:
-            self.stride = arrays.under("water").holding("stride", np.array([stretch]), "number", ti.i32)
+            self.multiple = arrays.under("water").holding("multiple", np.array([stretch]), "number", ti.i32)
 
     @ti.func
     def pace(self):
-        """Largest stride, in base steps."""
+        """The largest multiple."""
         longest = 1
         if ti.static(self.paced):
-            longest = self.stride[0]
+            longest = self.multiple[0]
         return longest
 
     @property
     def next(self) -> int:
         """The base step at which the air is to become stiff; NEVER if it is, or never will be."""
-        return self.due if self.now is self.soft else NEVER
+        return self.when if self.now is self.soft else NEVER
 
     def use(self, stiff: bool, gravity: float) -> None:
-        """Let the constants and the stride be those of stiff or of soft air."""
+        """Let the constants and the multiple be those of stiff or of soft air."""
         self.now = self.stiff if stiff else self.soft
         self.constants.become(self.now, gravity)
         if self.paced:
-            self.stride.fill(1 if stiff else self.stretch)
+            self.multiple.fill(1 if stiff else self.stretch)
 
     def change(self, gravity: float) -> np.ndarray:
         """Make the air stiff; returns the energy (W,) J/m that it loses."""

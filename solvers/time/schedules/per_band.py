@@ -54,8 +54,8 @@ class PerBand:
         """The time loop of one band, as in PerWorld; all bands of a world pass the same barriers in the same order."""
         w = self.clock.world(u)
         done, running = self.clock.step[w], self.clock.status[w] == RUNNING
-        before, stride = self.clock.before[w], self.stride_of(w)
-        says = self.freshness(u, done, origin + done * base, stride, target - done)
+        before, multiple = self.clock.before[w], self.multiple_of(w)
+        says = self.freshness(u, done, origin + done * base, multiple, target - done)
         self.clock.says[u] = says
         meetings = self.meet(w, 0)
         worst = self.worst(w)
@@ -65,16 +65,16 @@ class PerBand:
                     self.sequence.sort(w)
                 if ti.static(self.sequence.paced):  # noqa: SIM102 (compiled only where steps may be longer)
                     if worst == STALE:
-                        stride = self.sequence.stride(w, done, target - done)
+                        multiple = self.sequence.multiple(w, done, target - done)
                 meetings = self.meet(w, meetings)
-                dt = ti.cast(stride * base, self.real)
+                dt = ti.cast(multiple * base, self.real)
                 says = FINE if self.sequence.make_lists(u, origin + done * base, dt, worst == STALE) else FULL
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
             while worst == FINE and done < target:
-                t, dt = origin + done * base, ti.cast(stride * base, self.real)
-                kick = ti.cast(0.5 * (before + stride) * base, self.real)
+                t, dt = origin + done * base, ti.cast(multiple * base, self.real)
+                kick = ti.cast(0.5 * (before + multiple) * base, self.real)
                 for k in ti.static(range(len(self.before))):
                     self.begin(k, u, done, t, kick, dt)
                     meetings = self.meet(w, meetings)
@@ -84,33 +84,33 @@ class PerBand:
                         says = FAST
                     if ti.static(k < len(self.after) - 1):
                         meetings = self.meet(w, meetings)
-                done, before = done + stride, stride
+                done, before = done + multiple, multiple
                 if says == FINE:
-                    says = self.freshness(u, done, origin + done * base, stride, target - done)
+                    says = self.freshness(u, done, origin + done * base, multiple, target - done)
                 if says <= STALE and not self.carrier.goes_on(w):
                     says = ENDED
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
         if u % self.bands == 0:
-            self.clock.step[w], self.clock.before[w], self.clock.stride[w] = done, before, stride
+            self.clock.step[w], self.clock.before[w], self.clock.multiple[w] = done, before, multiple
         self.report(w, says)
 
     @ti.func
     def advance_world(self, w, target, origin, base):
         """The time loop of a world on one thread, band after band."""
-        start, stride = w * self.bands, self.stride_of(w)
+        start, multiple = w * self.bands, self.multiple_of(w)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             done = self.clock.step[w]
-            due = target - done
+            left = target - done
             t, worst = origin + done * base, FINE
             for u in range(start, start + self.bands):
-                worst = ti.max(worst, self.freshness(u, done, t, stride, due))
+                worst = ti.max(worst, self.freshness(u, done, t, multiple, left))
             if ti.static(self.sequence.paced):  # noqa: SIM102
                 if worst == STALE:
-                    stride = self.sequence.stride(w, done, due)
-                    self.clock.stride[w] = stride
-            dt = ti.cast(stride * base, self.real)
+                    multiple = self.sequence.multiple(w, done, left)
+                    self.clock.multiple[w] = multiple
+            dt = ti.cast(multiple * base, self.real)
             if worst != FINE:
                 whole, worst = worst == STALE, FINE
                 if whole:
@@ -119,7 +119,7 @@ class PerBand:
                     if not self.sequence.make_lists(u, t, dt, whole):
                         worst = FULL
             if worst == FINE:
-                kick = ti.cast(0.5 * (self.clock.before[w] + stride) * base, self.real)
+                kick = ti.cast(0.5 * (self.clock.before[w] + multiple) * base, self.real)
                 for k in ti.static(range(len(self.before))):
                     for u in range(start, start + self.bands):
                         self.begin(k, u, done, t, kick, dt)
@@ -127,7 +127,7 @@ class PerBand:
                     for u in range(start, start + self.bands):
                         if not self.end(k, u, done, t, kick, dt):
                             worst = FAST
-                self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
+                self.clock.step[w], self.clock.before[w] = self.clock.step[w] + multiple, multiple
                 if worst == FINE and not self.carrier.goes_on(w):
                     worst = ENDED
             self.report(w, worst)
@@ -158,18 +158,18 @@ class PerBand:
         return self.sequence.end(k, u, step, self.carrier.frame(w, t), kick, dt)
 
     @ti.func
-    def stride_of(self, w):
-        """Present stride of a world, in base steps."""
-        stride = 1
+    def multiple_of(self, w):
+        """Present multiple of a world, in base steps."""
+        multiple = 1
         if ti.static(self.sequence.paced):
-            stride = self.clock.stride[w]
-        return stride
+            multiple = self.clock.multiple[w]
+        return multiple
 
     @ti.func
-    def freshness(self, u, done, t, stride, due):
+    def freshness(self, u, done, t, multiple, left):
         """State of a band's lists at base step `done`, time t (s): FINE, some entries to be sought (ASKED), or STALE.
 
-        They also count as STALE if a step of `stride` base steps would overshoot the `due` ones to go.
+        They also count as STALE if a step of `multiple` base steps would overshoot the `left` ones.
         """
         says = FINE
         if self.sequence.asked(u):
@@ -179,10 +179,10 @@ class PerBand:
             says = STALE
         if ti.static(self.sequence.paced):
             w = self.clock.world(u)
-            if 0 < due < stride or self.sequence.dawdles(w, done, due, stride):
+            if 0 < left < multiple or self.sequence.may_lengthen(w, done, left, multiple):
                 says = STALE
             if worn:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
-                if self.sequence.rushes(w, stride):
+                if self.sequence.must_shorten(w, multiple):
                     says = STALE
         return says
 

@@ -37,33 +37,33 @@ class PerGrain:
             return
         done = int(self.clock.step.to_numpy()[running].min())
         half_skin = 0.5 * min((matter.slack() for matter in self.matters), default=np.inf)
-        before, stride = (int(field.to_numpy()[running].min()) for field in (self.clock.before, self.clock.stride))
+        before, multiple = (int(field.to_numpy()[running].min()) for field in (self.clock.before, self.clock.multiple))
         while done < target:
-            safe = self.safe_steps(half_skin, origin + done * base, stride * base)
-            if (safe < 1 or stride > target - done) and self.clock.running().any():
+            safe = self.safe_steps(half_skin, origin + done * base, multiple * base)
+            if (safe < 1 or multiple > target - done) and self.clock.running().any():
                 for matter in self.matters:
                     matter.sort_all()
-                stride = self.choose_stride(done, target - done)
-                self.make_lists(origin + done * base, stride * base)
-                safe = max(1, self.safe_steps(half_skin, origin + done * base, stride * base))
+                multiple = self.choose_multiple(done, target - done)
+                self.make_lists(origin + done * base, multiple * base)
+                safe = max(1, self.safe_steps(half_skin, origin + done * base, multiple * base))
             if not self.clock.running().all() and not self.may_go_on():
                 break
-            for _ in range(min(safe, (target - done) // stride)):
-                self.take_step(done, origin + done * base, 0.5 * (before + stride) * base, stride * base)
-                done, before = done + stride, stride
+            for _ in range(min(safe, (target - done) // multiple)):
+                self.take_step(done, origin + done * base, 0.5 * (before + multiple) * base, multiple * base)
+                done, before = done + multiple, multiple
             self.reach(done, before)
 
-    def choose_stride(self, done: int, due: int) -> int:
-        """Stride of the next steps of all running worlds from base step `done`, in base steps, at most `due`."""
+    def choose_multiple(self, done: int, left: int) -> int:
+        """How many base steps the next steps of all running worlds are long from `done` on, at most `left`."""
         if self.sequence.paced:
-            self.set_strides(done, due)
-        return int(self.clock.stride.to_numpy()[self.clock.running()].min())
+            self.set_multiples(done, left)
+        return int(self.clock.multiple.to_numpy()[self.clock.running()].min())
 
     @ti.kernel
-    def set_strides(self, done: ti.i32, due: ti.i32):
-        """Set the stride that each world allows, at most `due`."""
+    def set_multiples(self, done: ti.i32, left: ti.i32):
+        """Set the multiple that each world allows, at most `left`."""
         for w in range(self.worlds):
-            self.clock.stride[w] = self.sequence.stride(w, done, due)
+            self.clock.multiple[w] = self.sequence.multiple(w, done, left)
 
     def may_go_on(self) -> bool:
         """Whether some worlds are running and no state check has stopped one."""

@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.machine.units import ITERATIONS_A_THREAD
 from solvers.time.clock import Clock
-from solvers.time.sequence import BAR, Sequence
+from solvers.time.sequence import CHECK_EVERY, Sequence
 from solvers.time.watch import NO_ROOM, OVER, RUNNING, TOO_FAST
 
 
@@ -30,22 +30,22 @@ class PerWorld:
 
         The steps are an inner loop of their own, so that the compiler keeps their data in registers, not the lists'.
         """
-        w, stride = self.clock.world(world), 1
+        w, multiple = self.clock.world(world), 1
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             step = self.clock.step[w]
             t, fresh = origin + step * base, True
             worn = self.sequence.worn(w, t)
             stale = self.sequence.stale(w, t)
             if ti.static(self.sequence.paced):
-                due = target - step
-                if self.sequence.dawdles(w, step, due, self.clock.stride[w]):
+                left = target - step
+                if self.sequence.may_lengthen(w, step, left, self.clock.multiple[w]):
                     stale = True
-                if worn and self.sequence.rushes(w, self.clock.stride[w]):
+                if worn and self.sequence.must_shorten(w, self.clock.multiple[w]):
                     stale = True
-                if stale or self.clock.stride[w] > due:
-                    stale, self.clock.stride[w] = True, self.sequence.stride(w, step, due)
-                stride = self.clock.stride[w]
-            dt = ti.cast(stride * base, self.real)
+                if stale or self.clock.multiple[w] > left:
+                    stale, self.clock.multiple[w] = True, self.sequence.multiple(w, step, left)
+                multiple = self.clock.multiple[w]
+            dt = ti.cast(multiple * base, self.real)
             if stale or self.sequence.asked(w):
                 if stale:
                     self.sequence.sort(w)
@@ -54,14 +54,14 @@ class PerWorld:
                     self.clock.status[w] = NO_ROOM
             while fresh:
                 t = origin + self.clock.step[w] * base
-                kick = ti.cast(0.5 * (self.clock.before[w] + stride) * base, self.real)
+                kick = ti.cast(0.5 * (self.clock.before[w] + multiple) * base, self.real)
                 sound = self.take_step(w, self.clock.step[w], t, kick, dt)
-                self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
-                fresh = self.clock.step[w] + stride <= target
+                self.clock.step[w], self.clock.before[w] = self.clock.step[w] + multiple, multiple
+                fresh = self.clock.step[w] + multiple <= target
                 now = origin + self.clock.step[w] * base
                 fresh = fresh and not self.sequence.worn(w, now) and not self.sequence.asked(w)
                 if ti.static(self.sequence.paced):
-                    fresh = fresh and self.clock.step[w] % BAR != 0
+                    fresh = fresh and self.clock.step[w] % CHECK_EVERY != 0
                 if not sound:
                     self.clock.status[w], fresh = TOO_FAST, False
                 if fresh and not self.carrier.goes_on(w):

@@ -26,7 +26,7 @@ def scene() -> Scene:
     levels = (Level(0.0),)
     made = both(WIDTH, HEIGHT, DEPTH, ROWS, sound_speed=SOUND, levels=levels, air=air, background=BACKGROUND)
     step = min(made.longest_step(1.0), soft_limit(made, 1.0) / STRIDE)
-    return made.holding(replace(made.fluid, soft_stride=STRIDE), step=step)
+    return made.holding(replace(made.fluid, soft_multiple=STRIDE), step=step)
 
 
 def stirred() -> Scene:
@@ -158,7 +158,7 @@ def test_momentum_is_kept_over_the_moment():
     drops["velocity"] = 0.1 * np.random.default_rng(5).uniform(-1.0, 1.0, drops["position"].shape)
     given = {"outline": box(1.0, 1.0), "gravity": 0.0, "fluid": Fluid(water, drops)}
     made = scene_of(np.zeros((1, 0)), **given)
-    made.matters = made.holding(replace(made.fluid, soft_stride=STRIDE)).matters
+    made.matters = made.holding(replace(made.fluid, soft_multiple=STRIDE)).matters
     made.step = min(made.longest_step(1.0), soft_limit(made, 1.0) / STRIDE)
     run = Simulation(made, threads=1, arch="cpu")
     p = run.water.particles

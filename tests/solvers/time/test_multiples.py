@@ -86,23 +86,23 @@ def test_steps_are_longer_while_grains_are_slow(schedule):
     place = np.array([[[0.02 * k, RADIUS] for k in range(-2, 2)]])
     scene = scene_of(np.full((1, 4), RADIUS), box(0.1, 0.2), SOFT, SOFT, schedule=schedule, start_speed=2.0)
     run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=2)
-    (fastest,) = run.grains.calm.to_numpy()  # closing speed up to which the stride is 2
+    (fastest,) = run.grains.calm.to_numpy()  # closing speed up to which the multiple is 2
 
-    def stride(speed: float) -> int:
+    def multiple(speed: float) -> int:
         velocity = np.zeros((1, 4, 2))
         velocity[0, 3, 0] = speed
         run.launch(velocity)
         run.advance(64)
         run.advance(64)
-        return int(run.clock.stride.to_numpy()[0])
+        return int(run.clock.multiple.to_numpy()[0])
 
     assert 2.0 > fastest > 0.0
-    assert [stride(share * fastest) for share in (0.35, 0.45, 0.0)] == [2, 1, 2]
+    assert [multiple(share * fastest) for share in (0.35, 0.45, 0.0)] == [2, 1, 2]
     run.place(place + np.array([0.0, 0.1]))
     run.advance(64)
-    assert run.clock.stride.to_numpy()[0] == 2
+    assert run.clock.multiple.to_numpy()[0] == 2
     run.advance(int(2.0 * fastest / G / run.dt))  # a fall in a single call
-    assert run.clock.stride.to_numpy()[0] == 1
+    assert run.clock.multiple.to_numpy()[0] == 1
     run.close()
 
 

@@ -1,4 +1,4 @@
-"""Steps of a matter that are several base steps long, as those of water beside grains in a ship."""
+"""Substeps: steps of a matter that are several base steps long, as those of water beside grains in a ship."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -10,7 +10,7 @@ from solvers.machine.state import Axis, Scope
 
 
 @ti.data_oriented
-class Pace:
+class Substeps:
     """A step of a matter is `every` base steps: forces are computed in the first, and particles move in the last.
 
     Then it is known how the tank has moved through all of them. With 1 nothing is done here. Other matters may rebuild
@@ -23,7 +23,7 @@ class Pace:
         if self.long:
             world = (Axis("world", self.units.worlds),)
             (self.during,) = own.reals(world, "during", kept=False)  # s, the kick that belongs to the forces
-            (self.due,) = own.integers(world, "due", kept=False)  # whether lists are rebuilt
+            (self.rebuilding,) = own.integers(world, "rebuilding", kept=False)  # whether lists are rebuilt
 
     def first(self, phases: Iterable[Phase]) -> tuple[Phase, ...]:
         """Phases as they are called in the first base step."""
@@ -49,21 +49,21 @@ class Pace:
 
     @ti.func
     def sort(self, w):
-        """Sort the particles of a world, if its lists are due."""
-        due = 1
+        """Sort the particles of a world, if its lists are to be rebuilt."""
+        rebuilds = 1
         if ti.static(self.long):
-            due = 0
+            rebuilds = 0
             for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
                 if self.lists.stale(u):
-                    due = 1
-            self.due[w] = due
-        if due > 0:
+                    rebuilds = 1
+            self.rebuilding[w] = rebuilds
+        if rebuilds > 0:
             self.lists.order.sort_world(w)
 
     @ti.func
     def rebuilds(self, u):
         """Whether the lists of a unit are rebuilt with those of the other matters."""
-        due = True
+        rebuilds = True
         if ti.static(self.long):
-            due = self.due[self.units.world(u)] > 0
-        return due
+            rebuilds = self.rebuilding[self.units.world(u)] > 0
+        return rebuilds
