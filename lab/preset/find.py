@@ -155,9 +155,7 @@ def _merged(name_or_path: str | Path, overrides: Mapping | None) -> tuple[Source
     source, quick = _find_variant(str(name_or_path))
     try:
         layers = _layers(source)
-        changes = nested(overrides or {})
-        formats.upgrade(tables := [layer.table for layer in layers], source.shown)
-        formats.upgrade_words([*tables, changes], source.shown)
+        formats.upgrade([layer.table for layer in layers], source.shown, changes := nested(overrides or {}))
         keys = kept.keys()
         variant = _quick_variant(source, layers, marked(keys, "cheap"))
         if quick and not variant:

@@ -2,8 +2,8 @@
 
 In format 2, which had no key `format`, the table [water] was the sea; in format 3 that is [sea], and [water] is water
 in a tank. A preset that says no format and has no [water] reads the same in both. Values that have another word now are
-read under the old one, too. Recordings of earlier versions hold
-their presets as resolved then: with derived values in place of the keys that they follow from.
+read under the old one, too. Recordings of earlier versions hold their presets as resolved then: with derived values in
+place of the keys that they follow from.
 """
 
 import warnings
@@ -21,9 +21,10 @@ class OldFormat(UserWarning):
     """A preset of an earlier format was read as what it meant then."""
 
 
-def upgrade(tables: Sequence[dict], shown: str) -> None:
+def upgrade(tables: Sequence[dict], shown: str, changes: dict) -> None:
     """Put the tables of a preset and its bases, the lowest first, into the keys of the present format, in place.
 
+    Their words and those of the `changes` over them are put into present ones.
     Warns of a table that has another name now. Raises LabError, one sentence with the name `shown` of the preset, for
     a format that this version does not know, and for presets of different formats based on each other.
     """
@@ -33,6 +34,7 @@ def upgrade(tables: Sequence[dict], shown: str) -> None:
             f"{shown}: based_on: one of these presets has [water] and no format, the other is of format {FORMAT}; "
             f"say format = {FORMAT} in both, and name the sea [sea]."
         )
+    _upgrade_words([*tables, changes], shown)
     if formats != {2}:
         return
     for table in tables:
@@ -48,7 +50,7 @@ def upgrade(tables: Sequence[dict], shown: str) -> None:
     )
 
 
-def upgrade_words(tables: Sequence[dict], shown: str) -> None:
+def _upgrade_words(tables: Sequence[dict], shown: str) -> None:
     """Put values that have another word now into that, in place, and warn of each."""
     for key, old, new in (one for table in tables for one in _reword(table)):
         warnings.warn(f'{shown}: {key}: "{old}" is called "{new}" now; write that.', OldFormat, stacklevel=2)

@@ -40,16 +40,8 @@ if TYPE_CHECKING:
     from lab.preset.schema import Preset
     from lab.recording.contacts.table import Contacts
 
-SIZES = {
-    "world": 2,
-    "grain": 3,
-    "part": 5,
-    "water_particle": 7,
-    "air_particle": 19,
-    "gauge": 11,
-    "level": 13,
-    "edge": 17,
-}  # arbitrary but distinct sizes, to compare shapes
+# Arbitrary but distinct sizes, to compare shapes
+SIZES = dict(world=2, grain=3, part=5, water_particle=7, air_particle=19, gauge=11, level=13, edge=17)
 TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 
 
