@@ -69,10 +69,10 @@ class Quantity:
     space: int = PLANE
 
     def within(self, axes: int) -> "Quantity":
-        """The quantity in a scene of so many axes; of different units the first is that along them."""
-        unit, (along, *_, about) = self.unit, (*self.units, self.units[-1])
-        if along != about:
-            unit = ", ".join(along if name in DIRECTIONS else about for name in self.over(axes))
+        """The quantity in a scene of so many axes."""
+        unit, (along, about) = self.unit, (self.units[0], self.units[-1])
+        if self.over is freedoms and along != about:
+            unit = ", ".join(along if name in DIRECTIONS else about for name in freedoms(axes))
         return replace(self, space=axes, unit=unit)
 
     @property

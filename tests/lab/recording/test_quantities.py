@@ -96,8 +96,9 @@ def test_components_are_those_of_the_scenes_axes():
     assert force.units == ("N",) * 3 + ("N m",) * 3
     assert (spin.components, spin.units, spin.dimension) == (("pitch", "yaw", "roll"), ("rad/s",) * 3, "rotation")
     assert (place.components, place.units, place.axes) == (("y", "z", "x"), ("m",) * 3, ("time", "world", "axis"))
-    named = Quantity("d", "J", ("left", "right"))
-    assert named.within(SPACE).components == ("left", "right") and Quantity("e", "J").within(SPACE).shape == ()
+    named = Quantity("d", "m, 1/m", ("long", "bent")).within(SPACE)
+    assert (named.components, named.units) == (("long", "bent"), ("m", "1/m"))
+    assert Quantity("e", "J").within(SPACE).shape == ()
 
 
 @pytest.fixture(scope="module")
