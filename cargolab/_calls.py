@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 from lab import __version__, dotted, resume, run, sweep
 
 if TYPE_CHECKING:
+    from lab.naval.hull import Hull
     from lab.recording import Recording
     from lab.sweeps.calibration_report import Calibration
 
-__all__ = ["__version__", "calibrate", "explain", "open", "presets", "render", "resume", "run", "sweep", "view"]
+__all__ = ["__version__", "calibrate", "explain", "hull", "open", "presets", "render", "resume", "run", "sweep", "view"]
 
 
 def calibrate(
@@ -47,6 +48,32 @@ def open(path: Path | str, *, sound: bool = False) -> "Recording":
     from lab.recording import open_recording
 
     return open_recording(path, sound=sound)
+
+
+def hull(
+    file: Path | str,
+    *,
+    density: float = 1025.0,
+    fair: bool = False,
+    lbp: float | None = None,
+    ap: float = 0.0,
+    stations: int = 41,
+    scale: float = 1.0,
+    up: str = "z",
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    mirror: bool = False,
+    close: bool = False,
+) -> "Hull":
+    """The hull of a table of offsets (CSV) or a surface (STL): `hull.at(8.5)`, `hull.at(displacement=32000, trim=0.6)`.
+
+    `hull.table()` has hydrostatics at round draughts, `hull.form` righting levers. density: of the water, kg/m³. The
+    others are the options of `cargolab hull`: lengths in m.
+    """
+    from lab.naval.hull import read_hull
+    from lab.naval.surfaces.axes import Axes
+
+    axes = Axes(scale, up, origin, mirror, close)
+    return read_hull(file, density=density, fair=fair, stations=stations, axes=axes, lbp=lbp, ap=ap)
 
 
 def presets(word: str = "") -> dict[str, str]:

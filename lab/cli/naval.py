@@ -4,7 +4,17 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import FilePath, check_files, check_recording, out_option, quiet_option, set_option, tell
+from lab.cli.options import (
+    FilePath,
+    check_files,
+    check_recording,
+    json_option,
+    out_option,
+    quiet_option,
+    set_option,
+    tell,
+    tell_json,
+)
 
 
 @click.command()
@@ -12,7 +22,8 @@ from lab.cli.options import FilePath, check_files, check_recording, out_option, 
 @set_option
 @out_option("for figure, tables and page", "renders/stability/PRESET")
 @quiet_option
-def stability(preset: str, overrides: dict, out: Path | None, quiet: bool) -> None:
+@json_option
+def stability(preset: str, overrides: dict, out: Path | None, quiet: bool, as_json: bool) -> None:
     """Judge the ship of PRESET by the International Grain Code and the 2008 IS Code, without a simulation.
 
     \b
@@ -24,7 +35,12 @@ def stability(preset: str, overrides: dict, out: Path | None, quiet: bool) -> No
     loaded = load(preset, overrides)
     from lab.report.stability import judge
 
-    text, folder = judge(loaded, out)
+    text, folder, found = judge(loaded, out)
+    if as_json:
+        from lab.naval.tables import objects
+
+        tell_json({"folder": str(folder), **{name: objects(table) for name, table in found.items()}})
+        return
     if not quiet:
         tell(text)
     click.echo(folder)
@@ -80,10 +96,29 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
     help="Her length in the waterline, m, for the weather criterion; as her stations show it without.",
 )
 @click.option(
+    "--draught",
+    type=click.FloatRange(0, 1e3, min_open=True),
+    multiple=True,
+    metavar="M",
+    help="Hydrostatics at this mean draught, m; repeat for more.  [default: round draughts]",
+)
+@click.option(
+    "--displacement",
+    type=click.FloatRange(0, 1e7, min_open=True),
+    multiple=True,
+    metavar="T",
+    help="Hydrostatics at the draught of this displacement, t; repeat for more.",
+)
+@click.option("--trim", type=click.FloatRange(-1e3, 1e3), default=0.0, metavar="M", help="By the stern, m.")
+@click.option(
+    "--step", type=click.FloatRange(0, 1e3, min_open=True), metavar="M", help="Between the round draughts, m."
+)
+@click.option(
     "--at", type=float, metavar="X", help="Also print the section at X (m) as the outline of a preset's ship."
 )
 @out_option("for tables and figure", "renders/hull/NAME")
-def hull(file: Path, out: Path | None, **asked) -> None:
+@json_option
+def hull(file: Path, out: Path | None, as_json: bool, **asked) -> None:
     """Hydrostatics and cross curves of the hull in FILE; with --weights her draughts, levers and criteria.
 
     FILE is a table of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
@@ -95,15 +130,22 @@ def hull(file: Path, out: Path | None, **asked) -> None:
 
     \b
     cargolab hull wigley.csv
+    cargolab hull wigley.csv --step 0.25
+    cargolab hull ship.csv --draught 8.5 --displacement 32000 --trim 0.6
     cargolab hull barge.stl --scale 0.001 --weights weights.csv
     cargolab hull ship.csv --weights departure.csv --points openings.csv --holds holds.csv --grain grain.csv \\
         --wind 1500 10
     """
     check_files(file, *(asked[name] for name in ("weights", "points", "holds", "grain")))
+    from lab.naval.tables import objects
     from lab.report.hull import Asked, examine
 
     folder = out or Path("renders/hull") / file.stem
-    tell(examine(file, folder, Asked(**asked)))
+    text, found = examine(file, folder, Asked(**asked))
+    if as_json:
+        tell_json({"folder": str(folder), **{name: objects(table) for name, table in found.items()}})
+        return
+    tell(text)
     click.echo(folder)
 
 

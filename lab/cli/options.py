@@ -95,6 +95,7 @@ cluster_option = click.option(
     "--cluster", metavar="ADDRESS", help="Run on the workers of this Dask scheduler, e.g. tcp://node1:8786."
 )
 video_option = click.option("--no-video", is_flag=True, help="Do not paint a video.")
+json_option = click.option("--json", "as_json", is_flag=True, help="Print it as JSON, for other programs.")
 plots_option = click.option("--no-plots", is_flag=True, help="Do not draw figures.")
 
 
@@ -114,6 +115,13 @@ page_only_option = click.option(
     "--page", "page_only", is_flag=True, help="Run nothing: write the page from what is kept."
 )
 fast_option = click.option("--fast", is_flag=True, help="Only the parts that take seconds.")
+
+
+def tell_json(found: object) -> None:
+    """Print something as JSON, which escapes control codes."""
+    import json
+
+    click.echo(json.dumps(found, indent=1, ensure_ascii=True))
 
 
 def show(result, quiet: bool) -> None:

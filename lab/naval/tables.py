@@ -3,6 +3,7 @@
 import csv
 from collections.abc import Sequence
 from io import StringIO
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +15,12 @@ from lab.naval.sheet import Judged, Row, arms, shown
 from solvers.ship.naval.form import Form
 from solvers.ship.naval.grain_code import ASSUMED
 from solvers.ship.naval.holds import Hold
+from solvers.ship.naval.upright import level_at
 from solvers.ship.water import Water
 
 KN_HEELS = (5.0, 10.0, 12.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0)  # deg
 LEVELS = 20  # rows of a hold's table
-DRAUGHTS = 11  # rows of a table of hydrostatics
+LEAST_DRAUGHTS, MOST_DRAUGHTS = 8, 1000  # rows of a table of hydrostatics
 
 Table = tuple[Sequence[str], Sequence[Sequence[object]]]
 
@@ -30,9 +32,13 @@ HYDROSTATICS = {
     "KB m": ("kb", 3),
     "BM m": ("bm", 3),
     "KM m": ("km", 3),
+    "BML m": ("bml", 2),
+    "KML m": ("kml", 2),
     "TPC t/cm": ("tpc", 3),
     "MCT t m/cm": ("mct", 2),
     "LCF m": ("lcf", 3),
+    "Aw m2": ("waterplane", 1),
+    "wetted m2": ("wetted", 1),
     "Cb": ("block", 4),
     "Cm": ("midship", 4),
     "Cp": ("prismatic", 4),
@@ -62,19 +68,33 @@ def levers(ship: Judged, lying=None) -> Table:
     return tuple(columns), lines
 
 
-def hydrostatics(form: Form, water: Water, deepest: float, count: int = DRAUGHTS) -> Table:
-    """Hydrostatics at equal steps of draught (m) up to the deepest."""
+def round_draughts(deepest: float, step: float | None = None) -> np.ndarray:
+    """Draughts (m) at whole multiples of a step up to the deepest; by itself the step is 1, 2 or 5 of a decade.
+
+    Then there are LEAST_DRAUGHTS of them or up to 2.5 times as many. Raises LabError for a step deeper than that.
+    """
+    if step is None:
+        decade = 10.0 ** np.floor(np.log10(deepest / LEAST_DRAUGHTS))
+        step = max(one * decade for one in (1.0, 2.0, 5.0) if one * decade <= deepest / LEAST_DRAUGHTS * (1.0 + 1e-9))
+    count = int(deepest / step * (1.0 + 1e-9))
+    if not 1 <= count <= MOST_DRAUGHTS:
+        raise LabError(f"--step: {step:g} m gives {count} draughts up to {deepest:.4g} m; 1 to {MOST_DRAUGHTS} can be.")
+    return np.round(step * np.arange(1, count + 1), 9)
+
+
+def hydrostatics(form: Form, water: Water, draughts: Sequence[float], trim: float = 0.0) -> Table:
+    """Hydrostatics at mean draughts (m), with a trim (m) by the stern."""
     lines = []
-    for draught in deepest * np.arange(1, count + 1) / count:
-        found = form.hydrostatics(float(draught), water)
+    for draught in draughts:
+        found = form.afloat(level_at(form, float(draught), trim), water)
         lines.append(tuple(f"{getattr(found, name):.{digits}f}" for name, digits in HYDROSTATICS.values()))
     return tuple(HYDROSTATICS), lines
 
 
-def cross_curves(form: Form, water: Water, deepest: float, count: int = DRAUGHTS) -> Table:
-    """KN = GZ + KG sin(heel) at the displacements of equal steps of draught (m), the keel level."""
+def cross_curves(form: Form, water: Water, draughts: Sequence[float]) -> Table:
+    """KN = GZ + KG sin(heel) at the displacements of these draughts (m), the keel level."""
     lines = []
-    for draught in deepest * np.arange(1, count + 1) / count:
+    for draught in draughts:
         displacement = form.hydrostatics(float(draught), water).displacement
         levers = form.cross_curves(displacement, water, np.radians(KN_HEELS))
         lines.append((f"{displacement:.1f}", *(f"{lever:.3f}" for lever in levers)))
@@ -95,16 +115,30 @@ def hold(of: Hold) -> Table:
 
 def all_of(condition: Condition, rows: Sequence[Row], lying=None) -> dict[str, Table]:
     """Every table of a condition by the name of its file."""
-    deepest = 0.999 * condition.form.depth
+    draughts = round_draughts(0.999 * condition.form.depth)
     found = {
         "criteria": criteria(rows),
         "righting-levers": levers(condition, lying),
-        "hydrostatics": hydrostatics(condition.form, condition.water, deepest),
-        "cross-curves": cross_curves(condition.form, condition.water, deepest),
+        "hydrostatics": hydrostatics(condition.form, condition.water, draughts),
+        "cross-curves": cross_curves(condition.form, condition.water, draughts),
     }
     if condition.hold is not None:
         found["hold"] = hold(condition.hold)
     return found
+
+
+def objects(table: Table) -> list[dict[str, object]]:
+    """A table as JSON has it: its rows by the names of the columns, texts of numbers as numbers."""
+    header, lines = table
+    return [dict(zip(header, map(_plain, line), strict=True)) for line in lines]
+
+
+def _plain(cell: object) -> object:
+    try:
+        number = float(cell)
+    except (TypeError, ValueError):
+        return cell
+    return number if isfinite(number) else str(cell)
 
 
 def text(table: Table) -> str:

@@ -11,14 +11,12 @@ from lab.base.files import write_text
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
-from lab.naval.lengths import between
+from lab.naval.hull import DEEPEST, Hull, read_hull
 from lab.naval.loaded import Loaded, Wind
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.surfaces.axes import Axes
-from lab.naval.surfaces.mesh import Mesh
 from lab.naval.surfaces.offsets import write_offsets
-from lab.naval.surfaces.read import read_surface
 from lab.naval.surfaces.selfcheck import self_check
 from lab.naval.weights import Weights, read_weights
 from lab.report.stability import HEEL, SIGNS, aligned, columns, save_axes
@@ -27,10 +25,11 @@ from solvers.ship.naval.form import Form
 from solvers.ship.naval.holds import Hold
 from solvers.ship.water import Water
 
-SURFACES = (".stl",)
-DEEPEST = 0.95  # of the depth: the last draught of the tables
 WITH_WEIGHTS = "points", "grain", "wind"
-BRIEFLY = "T m", "displacement t", "LCB m", "KB m", "KM m", "TPC t/cm", "MCT t m/cm", "LCF m", "Cb"  # what is shown
+BRIEFLY = (  # what is shown
+    *("T m", "displacement t", "LCB m", "KB m", "KM m", "KML m"),
+    *("TPC t/cm", "MCT t m/cm", "LCF m", "wetted m2", "Cb"),
+)
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,8 @@ class Asked:
 
     The water's density is in kg/m³; `stations` is the fewest cuts of a surface, and what follows is of surfaces, too
     (`lab.naval.surfaces.axes`). `lbp` and `lwl` are her lengths (m) between perpendiculars, from the aft one at x =
-    `ap` (m), and in the waterline. With `fair` the offsets of a station are joined by fair curves.
+    `ap` (m), and in the waterline. With `fair` the offsets of a station are joined by fair curves. Hydrostatics are at
+    each `draught` (m) and of each `displacement` (t), with neither at multiples of a `step` (m), with a `trim` (m).
     """
 
     density: float = 1025.0
@@ -61,18 +61,17 @@ class Asked:
     lwl: float | None = None
     ap: float = 0.0
     fair: bool = False
+    draught: tuple[float, ...] = ()
+    displacement: tuple[float, ...] = ()
+    trim: float = 0.0
+    step: float | None = None
 
 
-def read_form(path: Path, asked: Asked) -> tuple[Form, Mesh | None]:
-    """The hull of a file, by its ending, and her surface if that is what it holds. Raises LabError."""
+def read(path: Path, asked: Asked) -> Hull:
+    """The hull of a file. Raises LabError."""
     axes = Axes(asked.scale, asked.up, asked.origin, asked.mirror, asked.close)
-    if path.suffix.lower() in SURFACES:
-        if asked.fair:
-            raise LabError(f"{path.name}: --fair is of tables of offsets; a surface says what is between its points.")
-        return read_surface(path, asked.stations, axes)
-    if axes != Axes():
-        raise LabError(f"{path.name}: --scale, --up, --origin, --mirror and --close are for surfaces; leave them out.")
-    return read_offsets(path, asked.fair), None
+    how = {"fair": asked.fair, "stations": asked.stations, "lbp": asked.lbp, "lwl": asked.lwl, "ap": asked.ap}
+    return read_hull(path, density=asked.density, axes=axes, **how)
 
 
 def between_offsets(path: Path, form: Form, fair: bool) -> str:
@@ -83,26 +82,29 @@ def between_offsets(path: Path, form: Form, fair: bool) -> str:
     return f"between offsets {curved}: {100.0 * more:+.2f} % of volume beside {straight}"
 
 
-def examine(path: Path, folder: Path, asked: Asked) -> str:
-    """Write the tables of a hull, and with a file of weights her levers and criteria; returns the text to show.
+def examine(path: Path, folder: Path, asked: Asked) -> tuple[str, dict[str, tables.Table]]:
+    """Write the tables of a hull, and with a file of weights her levers and criteria.
 
-    Raises LabError for files that are no hull, and weights that do not float.
+    Returns the text to show, and the tables by name. Raises LabError for files that are no hull, and weights that do
+    not float.
     """
     for name in WITH_WEIGHTS:
         if getattr(asked, name) and not asked.weights:
             raise LabError(f"--{name}: needs --weights, by which she floats; give both.")
-    (form, mesh), water = read_form(path, asked), Water(asked.density)
-    form = between(form, asked.lbp, asked.lwl, asked.ap)
+    ship = read(path, asked)
+    form, mesh, water = ship.form, ship.mesh, ship.water
+    draughts = _draughts(ship, asked)
     try:
         written = {
-            "hydrostatics": tables.hydrostatics(form, water, DEEPEST * form.depth),
-            "cross-curves": tables.cross_curves(form, water, DEEPEST * form.depth),
+            "hydrostatics": tables.hydrostatics(form, water, draughts, asked.trim),
+            "cross-curves": tables.cross_curves(form, water, draughts),
         }
         lines = [f"{path.name}: {len(form.x)} stations over {np.ptp(form.x):.5g} m, depth {form.depth:.4g} m"]
         lines += self_check(form, mesh, asked.stations)
         if mesh is None:
             lines.append(f"  {between_offsets(path, form, asked.fair)}")
-        lines += ["", *columns(written["hydrostatics"], BRIEFLY)]
+        lines += ["", *([f"  trim {asked.trim:g} m by the stern"] if asked.trim else [])]
+        lines += columns(written["hydrostatics"], BRIEFLY)
         holds = read_holds(asked.holds, form) if asked.holds else {}
         written |= {f"hold-{name}": tables.hold(hold) for name, hold in holds.items()}
         if asked.weights:
@@ -120,7 +122,16 @@ def examine(path: Path, folder: Path, asked: Asked) -> str:
         write_text(folder / "offsets.csv", text_of(list(rows_of(form))))
     if mesh and (said := write_offsets(form, folder)):
         lines += ["", said]
-    return "\n".join([*lines, "", SIGNS if mesh is None else f"{HEEL}; x, y and z are those of the file."])
+    return "\n".join([*lines, "", SIGNS if mesh is None else f"{HEEL}; x, y and z are those of the file."]), written
+
+
+def _draughts(ship: Hull, asked: Asked) -> list[float]:
+    """The draughts (m) that are asked for, those of the displacements asked for, else round ones."""
+    found = [ship.draught(draught, None, asked.trim) for draught in asked.draught]
+    found += [ship.draught(None, displacement, asked.trim) for displacement in asked.displacement]
+    if found and asked.step:
+        raise LabError("--step: is of a table at round draughts; leave it out, or --draught and --displacement.")
+    return found or ship.draughts(asked.step, asked.trim).tolist()
 
 
 def _spare(path: Path, asked: Asked, written: list[Path]) -> None:

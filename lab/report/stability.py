@@ -28,8 +28,9 @@ HEEL = "Heel is positive starboard down (the lab's own roll: positive port side 
 SIGNS = f"{HEEL}; z is from the keel."
 
 
-def judge(loaded: LoadedPreset, out: Path | None = None) -> tuple[str, Path]:
-    """Write page, figure and tables of a preset's ship to a folder; returns the text for the terminal and the folder.
+def judge(loaded: LoadedPreset, out: Path | None = None) -> tuple[str, Path, dict[str, tables.Table]]:
+    """Write page, figure and tables of a preset's ship to a folder; returns the text for the terminal, the folder
+    and the tables by name.
 
     Raises LabError for a preset without a ship, or one that cannot be judged.
     """
@@ -56,7 +57,7 @@ def judge(loaded: LoadedPreset, out: Path | None = None) -> tuple[str, Path]:
         given=loaded.given_text,
     )
     _write(folder / "stability.html", page)
-    return "\n".join([f"{preset.title}  ({loaded.name})", *described(found, rows)]), folder
+    return "\n".join([f"{preset.title}  ({loaded.name})", *described(found, rows)]), folder, written
 
 
 def _write(path: Path, text: str) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.outlines import Outlines
+from solvers.ship.naval.wetted import wetted_surface
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 
@@ -28,7 +29,8 @@ class Hydrostatics:
     """Hydrostatic particulars at a draught, upright: lengths in m, displacement in t, TPC in t/cm, MCT in t m/cm.
 
     lcb and lcf are as the stations' x, kb, km and kml as their z, the draught is from the base line. MCT and the
-    coefficients have the length between perpendiculars, and the breadth of this waterline; `length` is the waterline's.
+    coefficients have the length between perpendiculars, and the breadth of this waterline; `length` is the waterline's,
+    `waterplane` and `wetted` (the surface under water) are m².
     """
 
     draught: float
@@ -44,6 +46,7 @@ class Hydrostatics:
     mct: float
     lcf: float
     waterplane: float
+    wetted: float
     length: float
     breadth: float
     block: float
@@ -189,6 +192,7 @@ class Form:
             mct=displacement * bml / (CENTIMETRES * between),
             lcf=lcf,
             waterplane=surface,
+            wetted=wetted_surface(self.sections, self.weights, level),
             length=length,
             breadth=breadth,
             block=volume / (between * breadth * draught),
@@ -270,12 +274,8 @@ class Form:
         self, displacement: float, water: Water, heels: np.ndarray, lcg: float | None = None
     ) -> np.ndarray:
         """Levers KN (m) about y = z = 0 at heels (rad) to port: KN = GZ + KG sin φ with G amidships."""
-        return np.array(
-            [
-                -self.displaced(self.floating(displacement, water, h, lcg), h)[1][1]
-                for h in np.asarray(heels, dtype=float)
-            ]
-        )
+        heels = np.asarray(heels, dtype=float)
+        return np.array([-self.displaced(self.floating(displacement, water, h, lcg), h)[1][1] for h in heels])
 
     def righting_levers(
         self,
@@ -287,9 +287,8 @@ class Form:
     ) -> np.ndarray:
         """Levers GZ (m) at heels (rad) to port, with the centre of gravity y, z (m) of `gravity`, y to starboard."""
         heels = np.asarray(heels, dtype=float)
-        return (
-            self.cross_curves(displacement, water, heels, lcg) - gravity[1] * np.sin(heels) + gravity[0] * np.cos(heels)
-        )
+        own = self.cross_curves(displacement, water, heels, lcg)
+        return own - gravity[1] * np.sin(heels) + gravity[0] * np.cos(heels)
 
 
 def prism(section: Section, length: float) -> Form:

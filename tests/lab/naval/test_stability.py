@@ -76,11 +76,11 @@ def test_arm_of_moved_cargo_is_that_of_the_moved_centre(handysize):
 
 def test_tables_agree_with_each_other(handysize):
     """KN less KG sin φ is GZ; volumes of the hold are integrals of its section; TPC of a box is ρ L B / 100."""
-    header, lines = tables.hydrostatics(handysize.form, handysize.water, 9.7, 1)
+    header, lines = tables.hydrostatics(handysize.form, handysize.water, [9.7])
     values = dict(zip(header, map(float, lines[0]), strict=True))
     assert values["TPC t/cm"] == pytest.approx(1.025 * 130.7 * 27.0 / 100.0, abs=5e-4)
     assert values["displacement t"] == pytest.approx(handysize.displacement, abs=0.05)
-    header, lines = tables.cross_curves(handysize.form, handysize.water, 9.7, 1)
+    header, lines = tables.cross_curves(handysize.form, handysize.water, [9.7])
     for name, text in zip(header[1:], lines[0][1:], strict=True):
         heel = np.radians(float(name.split()[1]))
         gz = float(text) - handysize.fluid_height * np.sin(heel)
