@@ -11,6 +11,7 @@ from lab.cli.options import (
     FilePath,
     arch_option,
     check_recording,
+    json_option,
     out_option,
     plots_option,
     quiet_option,
@@ -19,6 +20,7 @@ from lab.cli.options import (
     short_overrides,
     show,
     tell,
+    tell_json,
     video_option,
 )
 
@@ -129,7 +131,8 @@ def bed(folder: Path, out: Path | None, world: int, moving: bool) -> None:
 @click.command()
 @click.argument("preset")
 @set_option
-def explain(preset: str, overrides: dict) -> None:
+@json_option
+def explain(preset: str, overrides: dict, as_json: bool) -> None:
     """Explain PRESET: what it simulates, which models it uses and what it will cost.
 
     \b
@@ -139,6 +142,11 @@ def explain(preset: str, overrides: dict) -> None:
     from lab.preset.find import load
 
     loaded = load(preset, overrides)  # before the slow imports, here and in other commands
+    if as_json:
+        from lab.report.explain import as_objects
+
+        tell_json(as_objects(loaded))
+        return
     from lab.report.explain import explain as explained
 
     tell(explained(loaded))

@@ -5,25 +5,48 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import cluster_option, fast_option, out_option, page_only_option, page_option, quiet_option, tell
+from lab.cli.options import (
+    cluster_option,
+    fast_option,
+    json_option,
+    out_option,
+    page_only_option,
+    page_option,
+    quiet_option,
+    tell,
+    tell_json,
+)
 from lab.preset.accuracy import LEVELS
 
 
 @click.command("list")
-def list_presets() -> None:
-    """List the presets."""
-    from lab.preset.find import QUICK, names
+@click.argument("group", required=False, default="")
+@click.option("--search", metavar="WORD", help="Only those with this word in name, title, source or what it reports.")
+@json_option
+def list_presets(group: str, search: str | None, as_json: bool) -> None:
+    """List the presets: all, or those of a GROUP, which is the beginning of their names.
 
-    titles = names()
+    \b
+    cargolab list
+    cargolab list ship
+    cargolab list --search "anti-roll"
+    cargolab list --json
+    """
+    from lab.preset.find import QUICK, listed
+
+    found = listed(group, search or "")
+    if as_json:
+        tell_json(found)
+        return
+    quick = {one["name"] for one in found if one["quick"]}
     shown = {
-        name + f"[{QUICK}]" * (name + QUICK in titles): title
-        for name, title in titles.items()
-        if not name.endswith(QUICK)
+        one["name"] + f"[{QUICK}]" * (one["name"] + QUICK in quick): one["title"] for one in found if not one["quick"]
     }
     width = max(map(len, shown), default=0)
     for name, title in shown.items():
         tell(f"{name:<{width}}  {title}")
-    click.echo(f"\n[{QUICK}]: also available under that longer name, cheaper and less accurate", err=True)
+    if quick:
+        click.echo(f"\n[{QUICK}]: also available under that longer name, cheaper and less accurate", err=True)
 
 
 @click.command()
@@ -32,7 +55,8 @@ def list_presets() -> None:
 @page_option
 @fast_option
 @page_only_option
-def verify(cases: tuple[str, ...], level: str | None, out: Path, fast: bool, page_only: bool) -> None:
+@json_option
+def verify(cases: tuple[str, ...], level: str | None, out: Path, fast: bool, page_only: bool, as_json: bool) -> None:
     """Compare small scenes with closed forms, independent integrations and published numbers.
 
     \b
@@ -45,7 +69,10 @@ def verify(cases: tuple[str, ...], level: str | None, out: Path, fast: bool, pag
     from lab.studies.verify.scenes import at_level
 
     with at_level(level or "reference"):
-        passed = (suite_at(level) if level else SUITE).run(cases, out, fast, page_only)
+        suite = suite_at(level) if level else SUITE
+        passed = suite.run(cases, out, fast, page_only, aside=as_json)
+    if as_json:
+        tell_json({"passed": passed, "cases": suite.kept(cases, out, fast)})
     if not passed:
         sys.exit(1)
 

@@ -18,13 +18,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lab.base import toml
-from lab.base.data import FOLDER, PREFIX, PRESETS, data_file
+from lab.base.data import PRESETS
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
 from lab.preset import formats
 from lab.preset.fields import marked
 from lab.preset.kept import read as kept
-from lab.preset.merge import merged, nested
+from lab.preset.merge import Layer, merged, nested
 from lab.preset.reader import check_keys, read
 from lab.preset.units import quoted, shown_path
 
@@ -36,7 +36,6 @@ LARGEST_FILE = 1_000_000  # bytes
 # a.b.c…, grow with the square, and a key is within one line.
 MOST_DOTS = 10_000_000
 
-FILE = "file"  # the key of a table that may be said in place of the table: history = "record.csv"
 QUICK = "-quick"  # suffix of a preset's name: its quick variant
 # Keys that describe one experiment and are not inherited by presets based on it.
 OWN_KEYS = ("title", "source", "reports", "based_on")
@@ -75,53 +74,34 @@ class Source:
         return Path(str(self.file)).parent
 
 
-@dataclass(frozen=True)
-class Layer:
-    """A table of keys to be merged with others, and the folder that paths in it are relative to."""
-
-    table: dict
-    folder: Path
-
-    def without(self, keys: Collection[str]) -> "Layer":
-        """The layer without some of its top-level keys."""
-        return Layer({key: value for key, value in self.table.items() if key not in keys}, self.folder)
-
-    def located(self, keys: Collection[str]) -> dict:
-        """The table with the paths under the dotted `keys` made absolute; NAME stands for any name."""
-        return reduce(self._with_full_path, keys, dict(self.table))
-
-    def _with_full_path(self, table: dict, dotted: str) -> dict:
-        key, _, rest = dotted.partition(".")
-        named = list(table) if key == "NAME" else [key] if key in table else []
-        return table | {name: self._located_value(table[name], rest) for name in named}
-
-    def _located_value(self, value: object, rest: str) -> object:
-        if rest and isinstance(value, Mapping):
-            return self._with_full_path(dict(value), rest)
-        if not isinstance(value, str) or rest not in ("", FILE):
-            return value
-        path = _measured(value) if value.startswith(PREFIX) else os.path.abspath(self.folder / value)
-        return {rest: path} if rest else path
-
-
-def _measured(value: str) -> str:
-    """The path of a file of measured series. Raises LabError where it is not there."""
-    path = data_file(value.removeprefix(PREFIX))
-    if path is None:
-        raise LabError(f"{quoted(value)} is not there: set {FOLDER} to the folder of measured series that has it.")
-    return os.path.abspath(path)
-
-
 def names() -> dict[str, str]:
     """Titles of the shipped presets and their quick variants by name, sorted."""
-    found = {}
+    return {one["name"]: one["title"] for one in listed()}
+
+
+def listed(group: str = "", word: str = "") -> list[dict[str, object]]:
+    """Name, title, source and report of the shipped presets and their `quick` variants, sorted by name.
+
+    Those alone whose name begins with `group` and which have `word` in one of these texts, in capitals or not. Raises
+    LabError if there are none.
+    """
+    found = []
     for name, file in _shipped().items():
         layers = _layers(Source(name, file))
-        quick = _quick_tables(layers)
-        found[name] = _written(layers)["title"]
+        quick, told = _quick_tables(layers), _written(layers)
+        one = {key: told.get(key, "") for key in ("title", "source", "reports")}
+        found.append({"name": name, "quick": False, **one})
         if quick:
-            found[name + QUICK] = f"{found[name]}, cheaper and less exact"
-    return dict(sorted(found.items()))
+            cheaper = {"title": f"{one['title']}, cheaper and less exact"}
+            found.append({"name": name + QUICK, "quick": True, **one, **cheaper})
+    found = [one for one in found if one["name"].startswith(group)]
+    if not found:
+        groups = sorted({name.partition("/")[0] for name in _shipped()})
+        raise LabError(f"no preset's name begins with {quoted(group)}; the groups are {', '.join(groups)}.")
+    found = [one for one in found if word.lower() in "\n".join(map(str, one.values())).lower()]
+    if not found:
+        raise LabError(f"--search: no preset has {quoted(word)} in its name, title, source or report.")
+    return sorted(found, key=lambda one: one["name"])
 
 
 def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPreset:

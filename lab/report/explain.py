@@ -1,5 +1,6 @@
 """What a preset simulates, which models it uses and what its run will cost, without running it."""
 
+import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -53,27 +54,50 @@ SCHEDULES = {
 KEYS_WIDTH = 34  # characters of a key and its value, before its sentence
 
 
+Sections = list[tuple[str, list[tuple[str, str]]]]
+
+
 def explain(loaded: LoadedPreset) -> str:
     """A page of text on a preset: scene, step and what limits it, what is compiled in, memory, expected run time."""
+    blocks = [
+        f"{loaded.resolved.title}  ({loaded.name})",
+        *(_section(title, rows) for title, rows in sections(loaded)),
+        "Preset in full\n" + "".join(f"    {line}\n" for line in _with_sentences(loaded.given_text)),
+    ]
+    return "\n".join(blocks)
+
+
+def as_objects(loaded: LoadedPreset) -> dict[str, object]:
+    """The same as JSON has it: each section's rows by their names, and the preset's keys as they were given."""
+    rows = {title: dict(rows) for title, rows in sections(loaded)}
+    return {
+        "name": loaded.name,
+        "title": loaded.resolved.title,
+        "sections": rows,
+        "preset": tomllib.loads(loaded.given_text),
+    }
+
+
+def sections(loaded: LoadedPreset) -> Sections:
+    """What is said of a preset: titles, and rows of a name and a text."""
     preset = loaded.resolved
     check_room(preset, grain_count(preset), most_drops(preset))
     simulation = _one_bed(preset)
     scene = simulation.scene
-    blocks = [
-        f"{preset.title}  ({loaded.name})",
-        _section("Scene", _scene(preset, scene)),
-        *_ship(preset, simulation),
-        *([_section("Coarse grains", rows)] if preset.grains and (rows := coarse.described(preset)) else []),
-        *([_section("Axle", axle.described(preset))] if preset.axle else []),
-        *([_section("Accuracy", grains.accuracy(preset))] if preset.grains else []),
-        *([_section("Accuracy", water.accuracy(preset))] if preset.water else []),
-        _section("Step", _step(simulation)),
-        _section("Compiled in", _parts(preset, simulation)),
-        _section("Cost", _cost(preset, scene, simulation)),
-        "Preset in full\n" + "".join(f"    {line}\n" for line in _with_sentences(loaded.given_text)),
+    accuracy = grains.accuracy(preset) if preset.grains else []
+    found = [
+        ("Scene", _scene(preset, scene)),
+        ("Ship", _ship(preset, simulation)),
+        ("Coarse grains", coarse.described(preset) if preset.grains else []),
+        ("Axle", axle.described(preset) if preset.axle else []),
+        ("Accuracy", accuracy),
+        ("Accuracy of the water" if accuracy else "Accuracy", water.accuracy(preset) if preset.water else []),
+        ("Step", _step(simulation)),
+        ("Compiled in", _parts(preset, simulation)),
+        ("Cost", _cost(preset, scene, simulation)),
     ]
     simulation.close()
-    return "\n".join(blocks)
+    return [(title, rows) for title, rows in found if rows]
 
 
 def _with_sentences(given: str) -> Iterator[str]:
@@ -124,13 +148,13 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     return rows
 
 
-def _ship(preset, simulation: Simulation) -> list[str]:
-    """The section on the ship; none without a ship."""
+def _ship(preset, simulation: Simulation) -> list[tuple[str, str]]:
+    """The rows on the ship; none without a ship."""
     if not preset.ship:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
     slab = (preset.thickness, preset.a_metre) if preset.matters else None
-    return [_section("Ship", describe(preset.ship, simulation.scene.vessels[0], preset.waves, slab, every))]
+    return describe(preset.ship, simulation.scene.vessels[0], preset.waves, slab, every)
 
 
 def _tank(preset, scene) -> str:

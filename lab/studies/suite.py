@@ -41,15 +41,17 @@ class Suite:
         """Of the results NAME.json, the page NAME.md and the figures NAME-FIGURE.png."""
         return self.file or self.command.split()[-1]
 
-    def run(self, names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> bool:
+    def run(
+        self, names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False, aside: bool = False
+    ) -> bool:
         """Run the cases that begin with any of `names`, or without names all that are not kept; whether all passed.
 
         They are printed, kept in `out` and written on the page. With `fast` only what takes seconds; `page_only`:
-        nothing is run. A case that fails or breaks does not stop the others. Raises LabError for a name that no case
-        begins with.
+        nothing is run; `aside`: prints on stderr. A case that fails or breaks does not stop the others. Raises LabError
+        for a name that no case begins with.
         """
-        chosen, console = {case.name: case for case in self.select(names, fast)}, Console(highlight=False)
-        kept = Kept(Path(out) / f"{self.name}.json", self.command, {"fast": fast})
+        chosen, console = {case.name: case for case in self.select(names, fast)}, Console(highlight=False, stderr=aside)
+        kept = self._kept(out, fast)
         for name in kept.missing([] if page_only else chosen, anew=bool(names)):
             outcome = carried_out(chosen[name], fast)
             show(outcome, console)
@@ -61,6 +63,13 @@ class Suite:
         console.print(f"failed: {', '.join(bad)}" if bad else f"all {len(done)} cases passed", soft_wrap=True)
         console.print(str(page), soft_wrap=True)
         return not bad
+
+    def kept(self, names: Sequence[str], out: Path | str, fast: bool) -> dict[str, dict]:
+        """What is kept in `out` of the cases that `run` chooses, by name."""
+        return self._kept(out, fast).shown([case.name for case in self.select(names, fast)])
+
+    def _kept(self, out: Path | str, fast: bool) -> Kept:
+        return Kept(Path(out) / f"{self.name}.json", self.command, {"fast": fast})
 
     def select(self, names: Sequence[str], fast: bool) -> list[Case]:
         """The cases that begin with any of `names`, all where there are none; with `fast` the quick ones.
