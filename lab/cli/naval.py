@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from lab.cli.completion import PresetName
 from lab.cli.options import (
     FilePath,
     check_files,
@@ -18,7 +19,7 @@ from lab.cli.options import (
 
 
 @click.command()
-@click.argument("preset")
+@click.argument("preset", type=PresetName())
 @set_option
 @out_option("for figure, tables and page", "renders/stability/PRESET")
 @quiet_option
@@ -172,7 +173,7 @@ def lewis(file: Path, **particulars: float | None) -> None:
 
 
 @click.command()
-@click.argument("preset")
+@click.argument("preset", type=PresetName())
 @set_option
 @out_option("for tables and figures", "renders/hydrodynamics/PRESET")
 def hydrodynamics(preset: str, overrides: dict, out: Path | None) -> None:

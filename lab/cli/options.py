@@ -6,6 +6,7 @@ import click
 
 from lab.base.errors import LabError
 from lab.base.text import printable
+from lab.cli.completion import Setting
 from lab.preset.units import quoted
 
 
@@ -81,6 +82,7 @@ def out_option(about: str, shown: str = "", default: Path | None = None):
 set_option = click.option(
     "--set",
     "overrides",
+    type=Setting(),
     multiple=True,
     metavar="KEY=VALUE",
     callback=read_overrides,

@@ -6,12 +6,13 @@ from pathlib import Path
 import click
 
 from lab.base.errors import LabError
+from lab.cli.completion import PresetName
 from lab.cli.options import ColourOption, FilePath, check_recording, out_option, set_option, tell
 from lab.preset.units import quoted
 
 
 @click.command()
-@click.argument("preset", required=False)
+@click.argument("preset", type=PresetName(), required=False)
 @set_option
 @out_option("for the recording", "renders/view/PRESET")
 @click.option(

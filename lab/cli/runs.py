@@ -7,6 +7,7 @@ import click
 
 from lab.base.costs import importing
 from lab.base.errors import LabError
+from lab.cli.completion import PresetName
 from lab.cli.options import (
     FilePath,
     arch_option,
@@ -26,7 +27,7 @@ from lab.cli.options import (
 
 
 @click.command()
-@click.argument("preset", required=False)
+@click.argument("preset", type=PresetName(), required=False)
 @set_option
 @click.option(
     "--replay",
@@ -129,7 +130,7 @@ def bed(folder: Path, out: Path | None, world: int, moving: bool) -> None:
 
 
 @click.command()
-@click.argument("preset")
+@click.argument("preset", type=PresetName())
 @set_option
 @json_option
 def explain(preset: str, overrides: dict, as_json: bool) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from lab.cli.completion import MeasureName, PresetName, Setting
 from lab.cli.options import (
     arch_option,
     cluster_option,
@@ -22,10 +23,11 @@ from lab.sweeps.axes import screen_first
 
 
 @click.command()
-@click.argument("preset")
+@click.argument("preset", type=PresetName())
 @click.option(
     "--set",
     "settings",
+    type=Setting(),
     multiple=True,
     metavar="KEY=VALUES",
     help="Values of a key: a range FROM:TO:NUMBER, with :log for a logarithmic one, or a list; one value just sets it.",
@@ -66,9 +68,11 @@ def sweep(
 
 
 @click.command()
-@click.argument("preset")
-@click.option("--target", required=True, metavar="MEASURE=VALUE", help="The measure and its wanted value.")
-@click.option("--vary", required=True, metavar="KEY=FROM:TO", help="The key to vary, and its range.")
+@click.argument("preset", type=PresetName())
+@click.option(
+    "--target", type=MeasureName(), required=True, metavar="MEASURE=VALUE", help="The measure and its wanted value."
+)
+@click.option("--vary", type=Setting(), required=True, metavar="KEY=FROM:TO", help="The key to vary, and its range.")
 @set_option
 @out_option("for the results", "renders/PRESET-calibration")
 @repeats_option

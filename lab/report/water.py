@@ -9,9 +9,10 @@ from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.measures.water_residual import residual
 from lab.preset.accuracy import LEVELS
+from lab.preset.kept.content import parted
 from lab.preset.schema import Preset
 from lab.preset.sections.water.air import REAL_SOUND
-from lab.preset.sections.water.liquid import centre_of_flow, depth, expected_speed, layers, parted
+from lab.preset.sections.water.liquid import centre_of_flow, depth, expected_speed, layers
 from lab.preset.units import show
 from lab.recording import Recording
 from lab.report.numbers import count_of

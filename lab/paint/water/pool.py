@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from lab.preset.kept.content import parted
 from lab.preset.schema import Preset
-from lab.preset.sections.water.liquid import parted
 from solvers.fluid.given import Gauge, Level
 
 
