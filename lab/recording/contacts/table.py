@@ -35,6 +35,7 @@ LOST = (
     "is not recorded: it depends on how each contact came about, and a recording has places alone. Of a law without "
     "memory it is at most friction times normal_force; normal_force and overlap follow from places and are here."
 )
+OF_GRAINS = "stress", "pressure", "mean_stress", "number", "coordination"
 NEVER = "tangential_force", "friction_force", "damping_force", "slip"
 
 
@@ -63,7 +64,7 @@ class Contacts:
     def __getattr__(self, name: str) -> object:
         if name in NEVER:
             raise NotRecorded(f"{name} {LOST}")
-        raise AttributeError(f"contacts have no {name}, but {', '.join(COLUMNS)}, stress, pressure, coordination")
+        raise AttributeError(f"contacts have no {name}, but {', '.join((*COLUMNS, *OF_GRAINS))}")
 
     @property
     def grains(self) -> np.ndarray:

@@ -23,7 +23,7 @@ def wetted_surface(sections: Sequence[Section | None], weights: np.ndarray, leve
         if sections[end] is None and sections[beside] is not None:
             girths[end] = 2.0 * max(level[end] - float(sections[beside].outline[:, 1].min()), 0.0)
     ends = [(sections[k], level[k]) for k in (0, -1) if sections[k] is not None]
-    return float(weights @ girths) + sum(section.immersion(-z, 0.0).area for section, z in ends)
+    return float(weights @ girths + sum(section.immersion(-z, 0.0).area for section, z in ends))
 
 
 def wetted_girth(outline: np.ndarray, level: float) -> float:

@@ -151,7 +151,7 @@ def test_command_with_weights(tmp_path):
     }
     assert '["13.5 m", "14 m"]' in answer.output
     assert (
-        len(re.findall(r"^ +[0-9.]+ +[0-9.]+ +65\.000 .* 1\.0000$", answer.output, re.MULTILINE)) == 11
+        len(re.findall(r"^ +[0-9.]+ +[0-9.]+ +65\.000 .* 1\.0000$", answer.output, re.MULTILINE)) == 13
     )  # a row a draught
 
 

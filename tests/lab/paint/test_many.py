@@ -74,7 +74,7 @@ def test_videos_go_beside_their_recordings_or_into_one_folder_under_their_names(
 
 
 def test_a_bad_recording_fails_alone_and_what_is_done_is_left_out(sweep, tmp_path, monkeypatch):
-    monkeypatch.setattr(many, "available_cores", lambda: 1)
+    monkeypatch.setattr("solvers.machine.runtime.available_cores", lambda: 1)
     failed, (first, second, third) = painted([sweep], tmp_path / "out")
     bad = sweep / "points" / "001"
     assert list(failed) == [bad] and "cannot be read as a recording" in failed[bad]
@@ -117,7 +117,7 @@ def test_a_killed_painter_fails_one_recording_and_another_takes_its_place(sweep,
             super().paint(job)
 
     monkeypatch.setattr(many, "Painter", Killed)
-    monkeypatch.setattr(many, "available_cores", lambda: 1)
+    monkeypatch.setattr("solvers.machine.runtime.available_cores", lambda: 1)
     good = [sweep / "points" / name for name in ("000", "002")]
     failed, (first, second) = painted(good)
     assert list(failed) == [good[0]] and "was ended" in failed[good[0]]

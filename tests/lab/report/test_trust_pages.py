@@ -164,7 +164,7 @@ def test_a_title_commands_no_terminal_and_no_browser_and_fits_a_picture(text, tm
 @pytest.mark.parametrize("command", ["explain", "stability"])
 def test_what_commands_print_has_no_control_codes(command, monkeypatch):
     monkeypatch.setattr("lab.report.explain.explain", lambda _: NASTY[8])
-    monkeypatch.setattr("lab.report.stability.judge", lambda *_: (NASTY[8], Path("x")))
+    monkeypatch.setattr("lab.report.stability.judge", lambda *_: (NASTY[8], Path("x"), {}))
     done = CliRunner().invoke(main, [command, "ship/handysize-grain"], prog_name="cargolab")
     assert done.exit_code == 0 and "red" in done.output
     assert_printable(done.output)

@@ -382,7 +382,7 @@ def test_the_python_call_takes_tables_and_keys(monkeypatch):
     calls = []
     monkeypatch.setattr("lab.sweeps.sweep.run_sweep", lambda *a, **k: calls.append((a, k)))
     lab.sweep("shaking/sway", {"run.seed": "1:3:3"}, grains={"count": 9}, run__repeats=2, video=False)
-    options = {"video": False, "quiet": False, "cluster": None}
+    options = {"video": False, "plots": True, "quiet": False, "cluster": None}
     assert calls == [
         (("shaking/sway", {"run.seed": "1:3:3"}, {"grains": {"count": 9}, "run.repeats": 2}, None), options)
     ]
