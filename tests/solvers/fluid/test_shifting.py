@@ -62,6 +62,6 @@ def test_water_that_is_not_shifted_has_nothing_of_it(run):
         other = Simulation(patch(shifting), threads=1, arch="cpu")
         arrays[shifting] = set(other.arrays.arrays)
         other.close()
-    shifted = {"water.span_before", "water.shift_y", "water.shift_z"}
+    shifted = {"water.eigenvalue_before", "water.shift_y", "water.shift_z"}
     assert arrays["delta-plus"] - arrays["none"] == shifted and arrays["none"] < arrays["delta-plus"]
     assert set(run.arrays.arrays) - arrays["delta-plus"] == {"water.carried_y", "water.carried_z"}

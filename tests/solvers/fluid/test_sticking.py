@@ -42,7 +42,7 @@ def test_all_that_walls_work_is_in_the_water_or_lost(make, close):
     start = run.observe()
     run.advance(500)
     end = run.observe()
-    names = "total", "work", "viscous", "diffusive", "held"
+    names = "total", "work", "viscous", "diffusive", "wall_energy"
     total, work, viscous, diffusive, held = (float((end[f"water_{n}"] - start[f"water_{n}"])[0]) for n in names)
     assert viscous > 0.1 * abs(work)  # else nothing was tried
     assert total + viscous + diffusive + held == pytest.approx(work, abs=close * abs(work))
