@@ -89,7 +89,15 @@ def test_what_is_squeezed_is_named(gas, said):
         refuse_state(0, {**particles, "gas": np.full(5, gas)}, 1.5, 17.0)
 
 
-SOUND = {"escaped": -1.0, "work": 4.0, "viscous": 3.0, "diffusive": 2.0, "kinetic": 1.0, "wall_energy": 0.5, "total": 100.0}
+SOUND = {
+    "escaped": -1.0,
+    "work": 4.0,
+    "viscous": 3.0,
+    "diffusive": 2.0,
+    "kinetic": 1.0,
+    "wall_energy": 0.5,
+    "total": 100.0,
+}
 START = 100.0 + 3.0 + 2.0 + 0.5 - 4.0  # J, of which all of that is accounted for
 
 
