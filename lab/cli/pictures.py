@@ -114,7 +114,7 @@ def render(recordings: tuple[Path, ...], out: Path | None, **wishes: object) -> 
 def _render_one(recording: Path, out: Path | None, wishes: dict) -> None:
     check_recording(recording)
     from lab.base.progress import Progress
-    from lab.paint.reel.batches import batches_for, paint_batches
+    from lab.paint.edit.batches import batches_for, paint_batches
     from lab.paint.video import render_recording, target_of
     from solvers.machine.runtime import available_cores
 

@@ -63,7 +63,7 @@ class Condition:
     side: str
     free_surface: float
     tanks: list[FreeSurface]
-    deck: float | None
+    deck_edge_angle: float | None
     flooding: float | None
     length: float
     scale: float
@@ -84,7 +84,7 @@ class Condition:
         return self.gravity_height + self.free_surface / self.displacement
 
     @property
-    def solid(self) -> float:
+    def solid_gm(self) -> float:
         """GM (m) as if all that is liquid were frozen."""
         return self.hydrostatics.km - self.gravity_height
 

@@ -61,7 +61,7 @@ class Loaded:
         return self.form.afloat(self.level, self.water)
 
     @property
-    def solid(self) -> float:
+    def solid_gm(self) -> float:
         """GM (m) without free surfaces."""
         return self.upright.km - self.weights.vcg
 
@@ -78,14 +78,14 @@ class Loaded:
         return Levers(HEELS, -port[::-1])
 
     @property
-    def list(self) -> float | None:
+    def heel_angle(self) -> float | None:
         """The heel (rad) at which she lies, positive starboard down; None: she comes to rest nowhere."""
         return self.starboard.equilibrium()
 
     @property
     def side(self) -> str:
         """The side that she is judged on: that of her list, where her levers are less."""
-        return "port" if self.list is not None and self.list < 0.0 else "starboard"
+        return "port" if self.heel_angle is not None and self.heel_angle < 0.0 else "starboard"
 
     @cached_property
     def levers(self) -> Levers:
@@ -93,7 +93,7 @@ class Loaded:
         return self.starboard if self.side == "starboard" else Levers(HEELS, -self.starboard.lever[::-1])
 
     @cached_property
-    def deck(self) -> float | None:
+    def deck_edge_angle(self) -> float | None:
         """The heel (rad) to her side at which the deck's edge goes under; infinite: not up to 90°."""
         edges = self.points["deck"] if "deck" in self.points else deck_edges(self.form)
         return self._under(edges) if len(edges) else None

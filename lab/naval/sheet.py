@@ -51,7 +51,7 @@ class Judged(Protocol):
 
 def rows(ship: Judged, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
     """All criteria that the ship can be judged by; `lying`: the heeling arm (m) of the cargo as it lay."""
-    levers, height, ends, found = ship.levers, ship.metacentric_height, (ship.deck, ship.flooding), []
+    levers, height, ends, found = ship.levers, ship.metacentric_height, (ship.deck_edge_angle, ship.flooding), []
     for name, arm in arms(ship, lying).items():
         *shifted_so, least = grain_code.criteria(levers, arm, height, *ends)
         found += [Row(name, criterion) for criterion in shifted_so]
@@ -101,7 +101,10 @@ def facts(condition: Condition) -> list[tuple[str, str]]:
         ("draught", f"{condition.draught:.4g} m, breadth {h.breadth:.4g} m, block coefficient {condition.block:.3f}"),
         ("KB, BM, KM", f"{h.kb:.3f}, {h.bm:.3f}, {h.km:.3f} m"),
         *_gravity(condition),
-        ("deck edge under", "no deck is given" if condition.deck is None else degrees(condition.deck)),
+        (
+            "deck edge under",
+            "no deck is given" if condition.deck_edge_angle is None else degrees(condition.deck_edge_angle),
+        ),
         ("downflooding", "no opening is given" if condition.flooding is None else degrees(condition.flooding)),
         ("levers vanish", vanishing(condition.levers)),
     ]
@@ -125,7 +128,7 @@ def _gravity(condition: Condition) -> list[tuple[str, str]]:
     return [
         *rows,
         ("KG solid, fluid", f"{condition.gravity_height:.3f}, {condition.fluid_height:.3f} m"),
-        ("GM solid", f"{condition.solid:.3f} m"),
+        ("GM solid", f"{condition.solid_gm:.3f} m"),
         ("free surfaces", f"{condition.free_surface:.4g} t m / {condition.displacement:.5g} t = {rise:.3f} m"),
         ("GM fluid", f"{condition.metacentric_height:.3f} m"),
         *_lolled(condition),

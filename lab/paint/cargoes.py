@@ -52,7 +52,7 @@ def _cell(name: str, bed: Bed) -> Image.Image:
     paint_tank(picture, camera, bed.footage.outline, WALL, palette.WALL, palette.HOLD, bed.footage.open_edges)
     scale_of = colouring("cargo", [bed])
     colour = scale_of.colours(bed, 0)
-    paint_grains(picture, to_discs(camera, place, bed.radius, bed.angle(0)), colour, *scale_of.dress(bed, colour))
+    paint_grains(picture, to_discs(camera, place, bed.radius, bed.angle(0)), colour, *scale_of.style(bed, colour))
     picture[:head] = palette.PAPER
     image = Image.fromarray(picture)
     draw = ImageDraw.Draw(image)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.paint.cargo.dress import CargoColours, aboard_of
 from lab.paint.cargo.looks import looks
+from lab.paint.cargo.style import CargoColours, aboard_of
 from lab.preset.sections.video import OF_AIR, OF_WATER
 from lab.recording.contacts.stress import pressures
 
@@ -69,7 +69,7 @@ class Colouring:
         index = np.nan_to_num(self.shares(bed, frame) * len(self.table))
         return self.table[np.clip(index, 0, len(self.table) - 1).astype(int)]
 
-    def dress(self, bed: Bed, colour: np.ndarray) -> tuple:
+    def style(self, bed: Bed, colour: np.ndarray) -> tuple:
         """The rest that `paint_grains` needs of grains of this colour (n, 3): marks, edges and finish."""
         if self.look:
             return self.look.marks(bed), bed.edges, self.look.finish(bed)

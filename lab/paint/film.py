@@ -16,18 +16,18 @@ from lab.paint.page.panel import Panel, moving
 from lab.paint.page.texts import Texts
 from lab.paint.page.theme import THEMES
 from lab.paint.painter import Camera
-from lab.paint.scenery.inset import Inset
-from lab.paint.scenery.stage import Setting, Stage
+from lab.paint.scene.inset import Inset
+from lab.paint.scene.view import SceneView, ViewSetting
 from lab.paint.water.layer import WaterLayer
 from lab.preset.sections.ship import axis_motion
 
-__all__ = ["MOST_BEDS", "Course", "Film", "Look", "choose_beds", "choose_look"]
+__all__ = ["MOST_BEDS", "Film", "Look", "Timeline", "choose_beds", "choose_look"]
 
 MOST_BEDS = 6  # beds of one recording shown side by side
 
 
 @dataclass(frozen=True)
-class Course:
+class Timeline:
     """When each picture of a film is: time (F,) s; notes: a text for each, such as that on slow motion; verdict: the
     sentence on the last one, and `held`, the number of pictures at the end that show it.
     """
@@ -42,7 +42,7 @@ class Film:
     """The pictures of some beds in one look; Taichi must be running (`solvers.machine.runtime`).
 
     beds: of one or several recordings, all drawn to one scale and with the times of the longest recording; the others
-    keep their last frame. most: how many are shown; the plot has all. course: when the pictures are, the frames'
+    keep their last frame. most: how many are shown; the plot has all. timeline: when the pictures are, the frames'
     times without it; moments: times (K,) at which the beds are shown in one picture. time (F,): of the pictures, s.
     """
 
@@ -52,11 +52,11 @@ class Film:
         look: Look,
         title: str | None = None,
         most: int = MOST_BEDS,
-        course: Course | None = None,
+        timeline: Timeline | None = None,
         moments: Sequence[float] | None = None,
     ) -> None:
         self._look, self._all, self._beds = look, list(beds), list(beds)[:most]
-        self._theme, self._course, self._moments = THEMES[look.theme], course, moments
+        self._theme, self._timeline, self._moments = THEMES[look.theme], timeline, moments
         self._title = title or beds[0].footage.title
         self._name_cargo()
         self._find_times()
@@ -68,18 +68,18 @@ class Film:
         self._lay_out(len(drawn), grains)
         self._water = WaterLayer(self._beds, look.colour, self._layout.unit)
         self._bar = self._water.colouring or grains
-        self._stage = self._make_stage()
-        self._stage.dress(grains, self._water, self._hues[: len(self._beds)])
+        self._view = self._make_view()
+        self._view.style(grains, self._water, self._hues[: len(self._beds)])
         self._panel = Panel(self._layout, self._theme, self.time, self._moved, self._together)
         self._panel.prepare(drawn)
-        self._inset = Inset.of(self._stage, self._beds[0], look.inset, self._layout)
+        self._inset = Inset.of(self._view, self._beds[0], look.inset, self._layout)
         self._page, self._still = self._draw_page()
         self.written: dict[str, tuple] = {}
 
     def picture(self, frame: int) -> np.ndarray:
         """The picture (height, width, 3), u8, of one frame; `written` has then the boxes of its texts by name."""
         picture = self._page.copy()
-        self._stage.paint(picture, frame)
+        self._view.paint(picture, frame)
         if self._inset:
             self._inset.paint(picture, frame, self._theme)
         image = Image.fromarray(picture)
@@ -88,7 +88,7 @@ class Film:
         self._panel.draw(image, texts, frame, self._moments)
         self._write_names(texts, frame)
         self._draw_verdict(image, texts, frame)
-        self._stage.write_names(image, frame)
+        self._view.write_names(image, frame)
         self.written = {**self._still, **texts.written}
         return np.asarray(image)
 
@@ -99,12 +99,12 @@ class Film:
 
     @property
     def held(self) -> int:
-        """How many pictures at the end of a course show what came of it; 0 without a course."""
-        return self._course.held if self._course else 0
+        """How many pictures at the end of a timeline show what came of it; 0 without a timeline."""
+        return self._timeline.held if self._timeline else 0
 
     def tank_camera(self, bed: int, frame: int) -> Camera:
         """The camera for points of the tank of a shown bed at the time of a picture."""
-        return self._stage.tank_camera(bed, frame)
+        return self._view.tank_camera(bed, frame)
 
     @property
     def layout(self) -> dict[str, tuple]:
@@ -128,10 +128,10 @@ class Film:
             self.time = np.array([max(self._moments)])
             times = [np.array([time]) for time in self._moments]
         else:
-            self.time = self._course.time if self._course else longest
+            self.time = self._timeline.time if self._timeline else longest
             times = [self.time] * len(self._beds)
         pairs = list(zip(self._beds, times, strict=True))
-        if self._course:
+        if self._timeline:
             self._rows = [np.interp(time, bed.footage.time, np.arange(bed.frames)) for bed, time in pairs]
             poses = [_between(bed, time, bed.footage.series_pose[:, bed.world]) for bed, time in pairs]
         else:
@@ -139,7 +139,7 @@ class Film:
             poses = [bed.pose[rows] for bed, rows in zip(self._beds, self._rows, strict=True)]
         self._pose = np.stack(poses, axis=1)
         moved = [_motion(bed, self._pose[:, k]) for k, bed in enumerate(self._beds)]
-        if self._course:  # an axis that stands still between two samples, too
+        if self._timeline:  # an axis that stands still between two samples, too
             moved = [_between(bed, time, _motion(bed, bed.footage.series_pose[:, bed.world])) for bed, time in pairs]
         self._moved = np.stack(moved, axis=1)
 
@@ -151,18 +151,18 @@ class Film:
             legend=grains is not None or look.colour not in ("water", "cargo"),
             inset=look.inset != "none" and self._moments is None,
             dial=self._together and look.frame == "tank" and bool(moves[0]),
-            band=bool(len(self._beds) == 1 and (self.lost or (self._course and self._course.verdict))),
+            band=bool(len(self._beds) == 1 and (self.lost or (self._timeline and self._timeline.verdict))),
         )
         self._layout = lay_out(look.width, look.height, needs)
 
-    def _make_stage(self) -> Stage:
+    def _make_view(self) -> SceneView:
         look, layout = self._look, self._layout
-        setting = Setting(layout["stage"], layout.canvas, layout.unit, self._theme, look.frame, look.overlay)
-        return Stage(self._beds, setting, np.array(self._rows), self._pose, self.time)
+        setting = ViewSetting(layout["view"], layout.canvas, layout.unit, self._theme, look.frame, look.overlay)
+        return SceneView(self._beds, setting, np.array(self._rows), self._pose, self.time)
 
     @property
     def _on_sea(self) -> bool:
-        """Whether the foot of the stage is water."""
+        """Whether the foot of the view is water."""
         return len(self._beds) == 1 and self._look.frame == "earth" and self._beds[0].footage.sea is not None
 
     def _draw_page(self) -> tuple[np.ndarray, dict[str, tuple]]:
@@ -172,7 +172,7 @@ class Film:
         page[:] = theme.panel
         left, top, right, bottom = layout.canvas
         page[top:bottom, left:right] = theme.paper
-        self._stage.paint_backdrop(page)
+        self._view.paint_backdrop(page)
         image = Image.fromarray(page)
         texts = Texts(image)
         texts.write("title", layout["title"], self._title, TITLE * layout.unit, theme.ink, bold=True)
@@ -187,11 +187,9 @@ class Film:
         left, top, right, bottom = layout["scale"]
         longest = 0.55 * (right - left)
         place = left, 0.5 * (top + bottom) + 0.3 * text
-        texts.written["scale"] = deco.draw_scale_bar(
-            texts.draw, place, longest, self._stage.cameras[0].scale, text, ink
-        )
+        texts.written["scale"] = deco.draw_scale_bar(texts.draw, place, longest, self._view.cameras[0].scale, text, ink)
         left, *rest = layout["note"]
-        thick, room = self._stage.overlay.thickness(self._stage.cameras[0]), round(3.2 * text)
+        thick, room = self._view.overlay.thickness(self._view.cameras[0]), round(3.2 * text)
         texts.write("note", (left + room * bool(thick), *rest), self._note(frame), text, quiet, anchor="rm")
         if thick and "note" in texts.written:
             left, top, *_ = texts.written["note"]
@@ -201,13 +199,13 @@ class Film:
     def _note(self, frame: int) -> str:
         """A note on playback speed and number of beds shown, if they need one, else on what drives the tank."""
         notes = []
-        if self._course and len(self._course.notes):
-            notes.append(self._course.notes[frame])
+        if self._timeline and len(self._timeline.notes):
+            notes.append(self._timeline.notes[frame])
         elif self._look.speed != 1 and self._moments is None:
             notes.append(f"{self._look.speed:g} × real time")
         if len(self._all) > len(self._beds):
             notes.append(f"{len(self._beds)} of {len(self._all)} beds")
-        notes.append(self._stage.overlay.says)
+        notes.append(self._view.overlay.says)
         footage = self._beds[0].footage
         if any(basin.lift for basin in footage.basins):
             notes.append("the upper tank stands behind the lower one")
@@ -215,28 +213,28 @@ class Film:
 
     def _write_names(self, texts: Texts, frame: int) -> None:
         """The beds' names and, for a few beds, the readings in which their poses differ."""
-        stage, size = self._stage, TEXT * self._layout.unit
+        view, size = self._view, TEXT * self._layout.unit
         with_readings = not self._together and len(self._beds) <= MOST_BEDS
         for k, bed in enumerate(self._beds):
             if not bed.name:
                 continue
             told = self._panel.readings(frame, k) if with_readings else []
-            text, (x, y) = bed.name + (f" ({told[0][1]})" if told else ""), stage.names_at[k]
+            text, (x, y) = bed.name + (f" ({told[0][1]})" if told else ""), view.names_at[k]
             colour = self._theme.ink if self._moments is not None else self._hues[k]
-            texts.write(f"bed {k}", (x, y - 1.2 * size, x + stage.name_width, y), text, size, colour, anchor="ls")
+            texts.write(f"bed {k}", (x, y - 1.2 * size, x + view.name_width, y), text, size, colour, anchor="ls")
 
     def _draw_verdict(self, image: Image.Image, texts: Texts, frame: int) -> None:
         """The band with what came of it: the loss of a ship from then on, or the verdict on the last pictures."""
         if self._moments is not None:
             return
         if len(self._beds) > 1 or "band" not in self._layout.boxes:
-            self._stage.draw_ends(image, frame)
+            self._view.draw_ends(image, frame)
             return
         end, box = self._beds[0].footage.ends[self._beds[0].world], self._layout["band"]
         if end and end.time <= self.time[frame] + TOLERANCE:
             said = f"She {end.words}"
-        elif self._course and self._course.verdict and frame >= len(self.time) - self._course.held:
-            said = self._course.verdict
+        elif self._timeline and self._timeline.verdict and frame >= len(self.time) - self._timeline.held:
+            said = self._timeline.verdict
         else:
             return
         deco.draw_band(texts.draw, box, said, TITLE * self._layout.unit, self._theme)

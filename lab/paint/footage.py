@@ -12,7 +12,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.cargo.looks import Stowage
 from lab.paint.painter import Edges
-from lab.paint.scenery.drive import drive_text
+from lab.paint.scene.drive import drive_text
 from lab.paint.sea import Rail, Sea
 from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool

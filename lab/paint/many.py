@@ -98,14 +98,14 @@ def paint_all(jobs: Sequence[Job], wishes: Wishes, progress: Progress) -> dict[P
     if len(left) < len(jobs):
         progress.say(f"{len(jobs) - len(left)} of {len(jobs)} are painted already")
     progress.begin_whole("painting", len(jobs), len(jobs) - len(left))
-    return _Studio(left, wishes, progress).work() if left else {}
+    return _PainterPool(left, wishes, progress).work() if left else {}
 
 
 def _file(path: Path) -> Path:
     return path / FILE_NAME if path.is_dir() else path
 
 
-class _Studio:
+class _PainterPool:
     """The painting processes, one a core, and the jobs that they have in hand."""
 
     def __init__(self, jobs: Sequence[Job], wishes: Wishes, progress: Progress) -> None:

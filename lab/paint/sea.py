@@ -12,8 +12,8 @@ import numpy as np
 from lab.assembly.ship import make_water, make_waves
 from lab.paint.page.theme import LIGHT, Theme
 from lab.paint.painter import Camera
-from lab.paint.scenery.backdrop import paint_sea
-from lab.paint.scenery.ship import paint_hull, paint_superstructure
+from lab.paint.scene.backdrop import paint_sea
+from lab.paint.scene.ship import paint_hull, paint_superstructure
 from lab.preset.schema import Preset
 from lab.preset.sections.axle import Axle
 from solvers.ship.waves import Waves, soft_start

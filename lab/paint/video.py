@@ -16,12 +16,12 @@ from lab.base.errors import LabError
 from lab.base.files import replacing
 from lab.base.turn import in_turn
 from lab.paint.decorations import number
+from lab.paint.edit.animation import FORMATS, stride_of, write_animation
+from lab.paint.edit.event import find_event, half_poured, telling_moments
+from lab.paint.edit.timeline import RATE, hero_timeline
 from lab.paint.encoder import says, write_video
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import Bed, open_footage
-from lab.paint.reel.animation import FORMATS, stride_of, write_animation
-from lab.paint.reel.course import RATE, hero_course
-from lab.paint.reel.event import find_event, half_poured, telling_moments
 from lab.recording import open_recording
 from solvers.machine.runtime import initialise
 
@@ -60,7 +60,7 @@ def render_recording(
     with the result on the last still. style: theme, cargo, overlay and inset of [video]. Options that are None are
     taken from the preset's [video]. world: one bed, counted from 0; None: up to six side by side. sound: only the rows
     before the first damaged one. piece (k, n): only the k-th, from 0, of n even parts of the pictures, which
-    `lab.paint.reel.batches` joins. progress(done, total) is called after each picture. Raises LabError.
+    `lab.paint.edit.batches` joins. progress(done, total) is called after each picture. Raises LabError.
     """
     initialise()
     wishes = {"colour": colour, "frame": frame, "width": width, "height": height, "speed": speed, **style}
@@ -69,8 +69,8 @@ def render_recording(
         wishes |= {"width": width or HERO[0], "height": height or HERO[1]}
     with open_footage(path, sound) as footage:
         beds, look = choose_beds(footage, world), choose_look(footage, **wishes)
-        course = hero_course(beds[0], look.speed) if hero else None
-        film = Film(beds, look, course=course)
+        timeline = hero_timeline(beds[0], look.speed) if hero else None
+        film = Film(beds, look, timeline=timeline)
         return _write(_made(target_of(path, out, png)), film, look.speed, png, progress, comment, piece)
 
 
@@ -150,7 +150,7 @@ def render_grid(
 
 def _frozen_twin(shown: list[Bed], path: Path | str) -> list[Bed]:
     """The last of the beds that are shown with its cargo frozen, which gives both their names."""
-    from lab.paint.reel.frozen import frozen_bed
+    from lab.paint.edit.frozen import frozen_bed
 
     loose = shown[-1]
     named = f"{loose.name}, " if loose.name else ""

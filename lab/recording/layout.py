@@ -67,10 +67,10 @@ def series_of(afloat: bool, matters: Collection[str] = MATTERS, axled: bool = Fa
     return (TIME, *tank.SERIES, *of_matters, *(ship.SERIES if afloat else ()), *(tank.OF_AXLE if axled else ()))
 
 
-def frames_of(swell: bool = False, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
-    """The quantities in the picture frames of a run; `swell`: with the waves, because the user steers them."""
+def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
+    """The quantities in the picture frames of a run; `steered_sea`: with the waves, because the user steers them."""
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].FRAMES)
-    return (TIME, *tank.FRAMES, *((WAVES,) if swell else ()), *of_matters)
+    return (TIME, *tank.FRAMES, *((WAVES,) if steered_sea else ()), *of_matters)
 
 
 def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:

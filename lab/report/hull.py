@@ -173,11 +173,11 @@ def facts(ship: Loaded) -> list[tuple[str, str]]:
         ("weights", f"{total.mass:.5g} t at {total.lcg:.3f} m, {total.tcg:.3f} m to starboard, KG {total.vcg:.3f} m"),
         ("draught", f"aft {aft:.3f}, forward {fore:.3f} m; trim {trim}"),
         ("KB, BM, KM", f"{upright.kb:.3f}, {upright.bm:.3f}, {upright.km:.3f} m"),
-        ("GM solid", f"{ship.solid:.3f} m"),
+        ("GM solid", f"{ship.solid_gm:.3f} m"),
         ("free surfaces", f"{total.free_surface:.4g} t m / {total.mass:.5g} t = {rise:.3f} m"),
         ("GM fluid", f"{ship.metacentric_height:.3f} m"),
         ("list", f"{_list(ship)}; judged to {ship.side}"),
-        ("deck edge under", sheet.degrees(ship.deck, "not up to 90 deg")),
+        ("deck edge under", sheet.degrees(ship.deck_edge_angle, "not up to 90 deg")),
         ("downflooding", _downflooding(ship.flooding)),
         ("levers vanish", sheet.vanishing(ship.levers)),
     ]
@@ -193,10 +193,10 @@ def _downflooding(angle: float | None) -> str:
 
 def _list(ship: Loaded) -> str:
     """Her list, positive starboard down."""
-    if ship.list is None:
+    if ship.heel_angle is None:
         return "none: she comes to rest nowhere"
     why = ", a loll: her GM is negative" if ship.metacentric_height < 0.0 else ""
-    return f"{sheet.degrees(abs(ship.list))} to {'port' if ship.list < 0.0 else 'starboard'}{why}"
+    return f"{sheet.degrees(abs(ship.heel_angle))} to {'port' if ship.heel_angle < 0.0 else 'starboard'}{why}"
 
 
 def _unjudged(ship: Loaded) -> list[str]:

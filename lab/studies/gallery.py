@@ -24,7 +24,7 @@ from lab.recording import Recording, open_recording
 from lab.report.numbers import number
 from lab.report.page import render
 from lab.report.summary import TELLING
-from lab.studies.reproduce.findings import asked
+from lab.studies.reproduce.cached import asked
 from lab.studies.reproduce.runs import Batch, carry_out
 
 WIDTH, HEIGHT = 640, 360  # pixels

@@ -31,7 +31,7 @@ DROPPED = 0.1  # share of the frames that is dropped at once when they exceed it
 
 
 @dataclass(frozen=True)
-class Scenery:
+class StaticScene:
     """The constant data of a live experiment; fields as in a `Footage`, for one world."""
 
     preset: Preset
@@ -48,8 +48,8 @@ class Scenery:
     water: Pool | None = None
 
     @classmethod
-    def of(cls, loaded: LoadedPreset, folder: Path, simulation: Simulation) -> "Scenery":
-        """The scenery of a preset's simulation, running or while its bed settles."""
+    def of(cls, loaded: LoadedPreset, folder: Path, simulation: Simulation) -> "StaticScene":
+        """The static scene of a preset's simulation, running or while its bed settles."""
         preset, scene = loaded.resolved, simulation.scene
         radius, grains = radii_of(scene), scene.grains
         kind = grains.kind if grains and grains.kind is not None else np.zeros(radius.shape, dtype=int)
@@ -59,8 +59,8 @@ class Scenery:
         pool = Pool.of(preset, *(of(scene) for of in (volumes_of, air_volumes_of)))
         return cls(preset, loaded.name, folder, radius, kind, *bounds, lines, shapes, simulation.dt, pool)
 
-    def for_filling(self, top: float) -> "Scenery":
-        """The scenery while the bed settles: no ship, and the tank cut off at the height `top` (m)."""
+    def for_filling(self, top: float) -> "StaticScene":
+        """The static scene while the bed settles: no ship, and the tank cut off at the height `top` (m)."""
         above = self.outline[:, 1] > top
         cut = np.column_stack([self.outline[:, 0], np.minimum(self.outline[:, 1], top)])
         lid = tuple(int(k) for k in np.nonzero(above & np.roll(above, -1))[0])
@@ -72,18 +72,18 @@ class LiveFootage:
 
     worlds = 1
 
-    def __init__(self, scenery: Scenery) -> None:
-        self.scenery = scenery
+    def __init__(self, static: StaticScene) -> None:
+        self.static = static
         for name in ("radius", "kind", "water", "outline", "open_edges", "fixed", "parts", "shapes"):
-            setattr(self, name, getattr(scenery, name))
-        self.matters = scenery.preset.matters
+            setattr(self, name, getattr(static, name))
+        self.matters = static.preset.matters
         volume = self.water.volume if self.water else np.zeros((1, 0))
-        self.basins = basins_of(scenery.preset, scenery.outline, scenery.open_edges, volume)
-        self.cargo = Stowage.of(scenery.preset)
-        self.kinds = ["the rest", *scenery.preset.kinds]
-        self.shape_names = list(scenery.preset.shapes) if self.shapes else ["disc"]
-        self.sea = Sea(scenery.preset) if scenery.preset.ship else None
-        self.settings, self.title = scenery.preset.video, scenery.preset.title
+        self.basins = basins_of(static.preset, static.outline, static.open_edges, volume)
+        self.cargo = Stowage.of(static.preset)
+        self.kinds = ["the rest", *static.preset.kinds]
+        self.shape_names = list(static.preset.shapes) if self.shapes else ["disc"]
+        self.sea = Sea(static.preset) if static.preset.ship else None
+        self.settings, self.title = static.preset.video, static.preset.title
         self._frames: list[LiveFrame] = []
         self._bytes = 0
 
@@ -170,7 +170,7 @@ class LiveFootage:
     @cached_property
     def levers(self) -> tuple[np.ndarray, np.ndarray]:
         """Heels (k,) rad and righting levers (k,) m of the ship, with her cargo frozen as it lay at the start."""
-        (vessel,) = vessels(self.scenery.preset)
+        (vessel,) = vessels(self.static.preset)
         heel = np.radians(np.linspace(0.0, 180.0, HEELS))
         ship = vessel.ship
         return heel, righting_levers(ship.load.section, ship.body.loading, ship.load.water, heel)

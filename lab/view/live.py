@@ -26,8 +26,8 @@ from lab.recording import WAVES, Recorder
 from lab.runs.batch import Run
 from lab.runs.beds import settled, settling
 from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
-from lab.view.panel.helm import Helm
-from lab.view.panel.swell import swell_of
+from lab.view.panel.sea_controls import sea_controls_of
+from lab.view.panel.steering import Steering
 from solvers.grains.pressing import Pressing
 from solvers.machine.errors import Unavailable
 from solvers.simulation import Simulation
@@ -87,9 +87,9 @@ class Live:
     def __init__(self, loaded: LoadedPreset, folder: Path, progress: Progress) -> None:
         preset = loaded.resolved
         self.preset, self.folder, self.pieces = preset, folder, 0
-        self.helm = None if preset.ship or preset.axle else Helm(offered(preset))
-        self.swell = swell_of(preset)
-        self.run = Run(loaded, folder, *build(preset, Helm.motions() if self.helm else None))
+        self.steering = None if preset.ship or preset.axle else Steering(offered(preset))
+        self.sea_controls = sea_controls_of(preset)
+        self.run = Run(loaded, folder, *build(preset, Steering.motions() if self.steering else None))
         self._end = ExitStack()
         with ExitStack() as otherwise:
             self.simulation = settled(self.run.scene, self.run.position, settling(preset), self._start, progress)
@@ -113,7 +113,7 @@ class Live:
     def set(self, name: str, value: float) -> None:
         """Set a control from the next piece on. Raises LabError for one that cannot be changed during a run."""
         control = CONTROLS[name]
-        mover = self.swell if self.preset.ship else self.helm
+        mover = self.sea_controls if self.preset.ship else self.steering
         if control.kind == MOVES and mover and name in mover.wanted:
             mover.wanted[name] = value
         elif control.kind == ALTERS:
@@ -128,9 +128,9 @@ class Live:
     def advance(self, pause: Callable[[], None] = lambda: None, most: int | None = None) -> None:
         """Run one piece, calling `pause` after every `most` steps. Raises BadState; what was recorded stays."""
         length = self.steps_a_piece * self.simulation.dt
-        if self.helm:
-            self.simulation.steer(self.helm.follow(length))
-        if self.swell and (vessel := self.swell.follow(length)):
+        if self.steering:
+            self.simulation.steer(self.steering.follow(length))
+        if self.sea_controls and (vessel := self.sea_controls.follow(length)):
             self.simulation.meet([vessel])
         begun, target = time.perf_counter(), self.simulation.steps + self.steps_a_piece
         most = self.simulation.whole(most or self.steps_a_piece)  # so that looks cut no step
@@ -159,7 +159,7 @@ class Live:
         """The data on the present waves for a frame of a ship."""
         if not self.preset.ship:
             return {}
-        return {"waves": self.swell.now if self.swell else np.full(WAVES.shape, np.nan)}
+        return {"waves": self.sea_controls.now if self.sea_controls else np.full(WAVES.shape, np.nan)}
 
     def close(self, status: str = "complete") -> None:
         """End the recording."""

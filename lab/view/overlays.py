@@ -1,4 +1,4 @@
-"""Lines over the stage: the forces between grains, their velocities, rings and crosses."""
+"""Lines over the view: the forces between grains, their velocities, rings and crosses."""
 
 import numpy as np
 

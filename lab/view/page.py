@@ -56,7 +56,7 @@ class Page:
             return self._waiting(shown)
         picture = self._paper.copy()
         scale = self._scale(shown)
-        left, top, right, bottom = self.stage
+        left, top, right, bottom = self.view
         picture[top:bottom, left:right] = self._stage_picture(shown, scale)
         self._put_texts(picture, shown)
         self._put_column(picture, shown, scale)
@@ -73,8 +73,8 @@ class Page:
         return round(units * self.unit)
 
     @property
-    def stage(self) -> tuple[int, int, int, int]:
-        """Left, top, right, bottom of the stage, the part of the picture with the tank."""
+    def view(self) -> tuple[int, int, int, int]:
+        """Left, top, right, bottom of the view, the part of the picture with the tank."""
         right = self.width - self.u(MARGIN + COLUMN + GAP)
         return self.u(MARGIN), self.u(MARGIN + TITLE + 1.0), right, self.height - self.u(MARGIN + 2.4)
 
@@ -91,22 +91,22 @@ class Page:
         return 0.5 * (left + right), 0.5 * (top + bottom)
 
     def _room(self, shown: Shown) -> tuple[int, int, int, int]:
-        """The part of the stage in which the tank is largest."""
+        """The part of the view in which the tank is largest."""
         low, high = self._ground(shown)
         return max(self._rooms(shown), key=lambda room: self._fit(room, high - low))
 
     def _rooms(self, shown: Shown) -> list[tuple[int, int, int, int]]:
-        """The parts of the stage where the tank may be: all of it, or the part right of the plot or below it."""
-        left, top, right, bottom = self.stage
+        """The parts of the view where the tank may be: all of it, or the part right of the plot or below it."""
+        left, top, right, bottom = self.view
         width, height = (self.u(side) for side in PLOT)
         if shown.curve == "nothing":
-            return [self.stage]
+            return [self.view]
         if shown.look.frame == "earth":  # this view has room beside the tank
             return [(left + width // 2, top, right, bottom)]
         return [(left + width, top, right, bottom), (left, top + height, right, bottom)]
 
     def _fit(self, room: tuple[int, int, int, int], extent: np.ndarray) -> float:
-        """Pixels per metre at which an extent (2,) m fits into a part of the stage."""
+        """Pixels per metre at which an extent (2,) m fits into a part of the view."""
         left, top, right, bottom = room
         spare = np.array([right - left, bottom - top]) - 2.0 * self.u(WALL + 0.4)
         return float((spare / extent).min())
@@ -187,82 +187,82 @@ class Page:
 
     def _stage_picture(self, shown: Shown, scale: Colouring | None) -> np.ndarray:
         """The tank with its contents, the marks of centre and picked grain, and the plot."""
-        footage, frame, (left, top, _, _) = shown.footage, shown.frame, self.stage
+        footage, frame, (left, top, _, _) = shown.footage, shown.frame, self.view
         camera, moved = (self._shifted(c, left, top) for c in (self.camera(shown), self.tank_camera(shown)))
         if shown.look.frame == "tank":
             key = footage, camera.scale, camera.offset
-            stage = self._still("tank", key, lambda: self._empty_stage(shown, camera, moved)).copy()
+            view = self._still("tank", key, lambda: self._empty_view(shown, camera, moved)).copy()
         else:
-            stage = self._empty_stage(shown, camera, moved)
+            view = self._empty_view(shown, camera, moved)
         if footage.water:
-            self._paint_water(stage, shown, moved)
+            self._paint_water(view, shown, moved)
         if scale:
-            self._paint_grains(stage, shown, moved, scale)
+            self._paint_grains(view, shown, moved, scale)
         for line in footage.plates(frame):
-            paint_plate(stage, moved, line, PLATE * self.unit, palette.PART)
+            paint_plate(view, moved, line, PLATE * self.unit, palette.PART)
         if scale and shown.look.overlay == "forces":
             lines, self._largest = force_strokes(shown, moved)
-            paint_strokes(stage, lines, FORCE)
+            paint_strokes(view, lines, FORCE)
         elif scale and shown.look.overlay == "velocities":
             lines, self._largest = velocity_strokes(shown, moved)
-            paint_strokes(stage, lines, palette.INK)
-        self._mark(stage, shown, moved)
+            paint_strokes(view, lines, palette.INK)
+        self._mark(view, shown, moved)
         if shown.curve != "nothing":
-            _put(stage, self._curve(shown), 0, 0)
+            _put(view, self._curve(shown), 0, 0)
         if footage.water:
-            image = Image.fromarray(stage)
+            image = Image.fromarray(view)
             self._marks(footage).name(image, moved)
-            stage = np.array(image)
+            view = np.array(image)
         if shown.lost:
-            _put(stage, self._still("lost", (shown.lost,), lambda: self._lost(shown.lost)), 0, -self.u(BAND))
-        return stage
+            _put(view, self._still("lost", (shown.lost,), lambda: self._lost(shown.lost)), 0, -self.u(BAND))
+        return view
 
-    def _paint_water(self, stage: np.ndarray, shown: Shown, camera: Camera) -> None:
+    def _paint_water(self, view: np.ndarray, shown: Shown, camera: Camera) -> None:
         """The water and its gauges, whose names are written at the end."""
         footage, frame = shown.footage, shown.frame
-        self._water.paint(stage, camera, footage.bed, frame)
+        self._water.paint(view, camera, footage.bed, frame)
         levels = footage.row(frame, "level_depth") if footage.water.levels else ()
-        self._marks(footage).paint(stage, camera, dict(zip(footage.water.levels, levels, strict=True)))
+        self._marks(footage).paint(view, camera, dict(zip(footage.water.levels, levels, strict=True)))
 
     def _marks(self, footage: LiveFootage) -> Marks:
         return Marks(footage.outline, footage.water, hues_of(footage.water), self.unit)
 
-    def _paint_grains(self, stage: np.ndarray, shown: Shown, camera: Camera, scale: Colouring) -> None:
+    def _paint_grains(self, view: np.ndarray, shown: Shown, camera: Camera, scale: Colouring) -> None:
         """The grains, paler below force chains."""
         bed, frame = shown.footage.bed, shown.frame
         colour = scale.colours(bed, frame)
         if shown.look.overlay == "forces":
             colour = 0.25 * colour + 0.75 * np.array(palette.PAPER)
         discs = to_discs(camera, bed.position(frame), bed.radius, bed.angle(frame))
-        paint_grains(stage, discs, colour, *scale.dress(bed, colour))
+        paint_grains(view, discs, colour, *scale.style(bed, colour))
 
     def _lost(self, end: End) -> Image.Image:
-        """The band across the foot of the stage with the text on how the ship was lost."""
-        left, _, right, _ = self.stage
+        """The band across the foot of the view with the text on how the ship was lost."""
+        left, _, right, _ = self.view
         image = Image.new("RGB", (right - left, self.u(BAND)))
         deco.draw_band(ImageDraw.Draw(image), (0, 0, *image.size), f"She {end.words}", 1.4 * TEXT * self.unit)
         return image
 
-    def _empty_stage(self, shown: Shown, camera: Camera, moved: Camera) -> np.ndarray:
+    def _empty_view(self, shown: Shown, camera: Camera, moved: Camera) -> np.ndarray:
         """The sea, the hull and the tank with its fixed grains."""
-        footage, frame, (left, top, right, bottom) = shown.footage, shown.frame, self.stage
-        stage = self._paper[top:bottom, left:right].copy()
+        footage, frame, (left, top, right, bottom) = shown.footage, shown.frame, self.view
+        view = self._paper[top:bottom, left:right].copy()
         if shown.look.frame == "earth":
             if footage.sea:
-                whole = np.array([[0, stage.shape[0]], [stage.shape[1], 0]]) - camera.offset
+                whole = np.array([[0, view.shape[0]], [view.shape[1], 0]]) - camera.offset
                 ground = tuple(whole * [1.0, -1.0] / camera.scale)
-                footage.sea_of(frame).paint(stage, camera, ground, footage.row_time(frame), LINE * self.unit)
-                footage.sea.paint_hull(stage, moved, self._wall(camera, footage.sea.hull))
+                footage.sea_of(frame).paint(view, camera, ground, footage.row_time(frame), LINE * self.unit)
+                footage.sea.paint_hull(view, moved, self._wall(camera, footage.sea.hull))
             else:
                 faint = self._wall(camera, footage.outline)
-                paint_tank(stage, camera, footage.outline, faint, palette.GRID, palette.PAPER, footage.open_edges)
+                paint_tank(view, camera, footage.outline, faint, palette.GRID, palette.PAPER, footage.open_edges)
         thick = self._wall(camera, footage.outline)
         for basin in footage.basins:
-            paint_tank(stage, moved, basin.drawn, thick, palette.WALL, palette.HOLD, basin.open_edges)
+            paint_tank(view, moved, basin.drawn, thick, palette.WALL, palette.HOLD, basin.open_edges)
         if len(fixed := footage.fixed):
             grey = np.tile(palette.FIXED, (len(fixed), 1))
-            paint_grains(stage, to_discs(moved, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), grey, grey)
-        return stage
+            paint_grains(view, to_discs(moved, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), grey, grey)
+        return view
 
     @staticmethod
     def _shifted(camera: Camera, left: int, top: int) -> Camera:
@@ -271,23 +271,23 @@ class Page:
     def _wall(self, camera: Camera, outline: np.ndarray) -> float:
         return min(WALL * self.unit, max(1.0, 0.04 * camera.scale * np.ptp(outline, axis=0).min()))
 
-    # Drawings over the stage
+    # Drawings over the view
 
-    def _mark(self, stage: np.ndarray, shown: Shown, camera: Camera) -> None:
+    def _mark(self, view: np.ndarray, shown: Shown, camera: Camera) -> None:
         """The centre of roll, a cross in a ring, and a ring around the grain that was picked."""
         centre, picked, footage = self._centre(shown), shown.look.picked, shown.footage
         if centre is not None:
-            (x, y), r = centre - self.stage[:2], self.u(0.45)
+            (x, y), r = centre - self.view[:2], self.u(0.45)
             arms = np.array([[x - 1.7 * r, y, 0.7, x + 1.7 * r, y, 0.7], [x, y - 1.7 * r, 0.7, x, y + 1.7 * r, 0.7]])
-            paint_strokes(stage, np.concatenate([arms, ring(x, y, r, 0.07 * self.unit)]), GRAB)
+            paint_strokes(view, np.concatenate([arms, ring(x, y, r, 0.07 * self.unit)]), GRAB)
         if picked is not None:
             place = camera.pixels(footage.grains("position", shown.frame)[picked][None])[0]
             r = 1.3 * footage.radius[0][picked] * camera.scale + 2.0
-            paint_strokes(stage, ring(*place, r, 0.08 * self.unit), PICKED)
+            paint_strokes(view, ring(*place, r, 0.08 * self.unit), PICKED)
 
     def _put_texts(self, picture: np.ndarray, shown: Shown) -> None:
-        """The title above the stage; below it the scale, and the latest message or else the meaning of the overlay."""
-        left, _, right, bottom = self.stage
+        """The title above the view; below it the scale, and the latest message or else the meaning of the overlay."""
+        left, _, right, bottom = self.view
         title, scale, said = shown.footage.title, self.camera(shown).scale, shown.said
         _put(picture, self._still("title", (title,), lambda: self._title(title, right - left)), left, self.u(MARGIN))
         bar = self._still("bar", (scale,), lambda: self._scale_bar(round(0.38 * right) - left, scale))

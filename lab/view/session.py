@@ -15,7 +15,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.sections.video import colours_of
 from lab.runs.runner import RENDERS, free_folder
-from lab.view.footage import LiveFootage, Scenery
+from lab.view.footage import LiveFootage, StaticScene
 from lab.view.page import Page
 from lab.view.panel.controls import CONTROLS, RESTARTS, offered
 from lab.view.panel.curves import offered_curves
@@ -90,16 +90,16 @@ class Session(Shown):
         else:
             self.say(sentence)
 
-    def _on_settling(self, scenery: Scenery) -> None:
-        self.footage, self.playhead = LiveFootage(scenery), None
+    def _on_settling(self, static: StaticScene) -> None:
+        self.footage, self.playhead = LiveFootage(static), None
 
-    def _on_ready(self, what: tuple[Scenery, dict]) -> None:
-        scenery, own = what
+    def _on_ready(self, what: tuple[StaticScene, dict]) -> None:
+        static, own = what
         self.settling = False
-        self.footage = LiveFootage(scenery)
+        self.footage = LiveFootage(static)
         if self.footage.sea or self.footage.bed.empty:
             self.look.inset = "water" if self.footage.water else "turn"
-        self.values = offered(scenery.preset) | own
+        self.values = offered(static.preset) | own
         self._own = own
         for name, value in own.items():
             self._send("set", (name, value))
@@ -180,7 +180,7 @@ class Session(Shown):
         self._restart(overrides)
 
     def _changed(self, name: str) -> bool:
-        given = offered(self.footage.scenery.preset).get(name) if self.footage else None
+        given = offered(self.footage.static.preset).get(name) if self.footage else None
         return given is not None and abs(given - self.values[name]) > 1e-9 * abs(given)
 
     def keep(self) -> None:
@@ -199,8 +199,8 @@ class Session(Shown):
         self.playhead = None if wanted == last else wanted
 
     def zoom(self, turns: float) -> None:
-        """Zoom in, or with negative turns out, about the middle of the stage."""
-        left, top, right, bottom = self.page.stage
+        """Zoom in, or with negative turns out, about the middle of the view."""
+        left, top, right, bottom = self.page.view
         self.wheel(turns, 0.5 * (left + right), 0.5 * (top + bottom))
 
     def toggle_typing(self) -> None:
@@ -222,7 +222,7 @@ class Session(Shown):
         """Handle a mouse button pressed at a pixel."""
         slider = self.page.slider_at(x, y)
         centre = self.page.centre_at(self, x, y)
-        self._grip = ("slider", slider) if slider else ("centre",) if centre else ("stage", button)
+        self._grip = ("slider", slider) if slider else ("centre",) if centre else ("view", button)
         self._start = self._last = (x, y)
         self.drag(x, y)
 
@@ -248,7 +248,7 @@ class Session(Shown):
 
     def release(self, x: float, y: float) -> None:
         """Handle the button's release; a click picks the grain at the pixel."""
-        clicked = self._grip == ("stage", "left") and np.hypot(x - self._start[0], y - self._start[1]) <= CLICK
+        clicked = self._grip == ("view", "left") and np.hypot(x - self._start[0], y - self._start[1]) <= CLICK
         self._grip = None
         if clicked and self.footage and len(self.footage):
             self.look.picked = self.page.grain_at(self, x, y)

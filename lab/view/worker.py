@@ -1,8 +1,8 @@
 """The live experiment in a separate process, so that drawing and simulation do not wait for each other.
 
 The processes exchange messages, pairs of a word and its data. To the experiment: `set` (name, value), `go`, `pace`,
-`piece`, `keep` (folder), `end`. From it: `message` (sentence), `settling` (Scenery of a bed that is not ready yet),
-`ready` (Scenery, the preset's own motion), `frame` (LiveFrame, speed reached), `kept` (folder), `over` (sentence).
+`piece`, `keep` (folder), `end`. From it: `message` (sentence), `settling` (StaticScene of a bed that is not ready yet),
+`ready` (StaticScene, the preset's own motion), `frame` (LiveFrame, speed reached), `kept` (folder), `over` (sentence).
 """
 
 import math
@@ -20,9 +20,9 @@ from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset, load
 from lab.recording import FILE_NAME, Recorder
 from lab.recording.ship_end import VERBS
-from lab.view.footage import Scenery
+from lab.view.footage import StaticScene
 from lab.view.live import Live, LiveFrame, own_motion, steerable
-from lab.view.outbox import Outbox
+from lab.view.send_queue import SendQueue
 from solvers.grains.pressing import UNTOUCHED
 from solvers.machine import runtime
 from solvers.machine.errors import BadState, Unavailable
@@ -37,9 +37,9 @@ GRAIN_STEPS_A_CALL = 100_000  # between checks for messages, some milliseconds
 class SentProgress(Progress):
     """Progress sent to the window, with pictures of the bed as it settles."""
 
-    def __init__(self, outbox: Outbox, loaded: LoadedPreset, folder: Path) -> None:
+    def __init__(self, queue: SendQueue, loaded: LoadedPreset, folder: Path) -> None:
         super().__init__(quiet=True)
-        self._outbox, self._stage = outbox, ""
+        self._queue, self._stage = queue, ""
         self._loaded, self._folder = loaded, folder
         self._watched, self._sent = None, -math.inf
 
@@ -47,12 +47,12 @@ class SentProgress(Progress):
         """Begin a stage."""
         super().start(stage, total, cost)
         self._stage = stage
-        self._outbox.send("message", f"{stage} …")
+        self._queue.send("message", f"{stage} …")
 
     def reach(self, done: float) -> None:
         """Send the time reached in the stage."""
         super().reach(done)
-        self._outbox.send("message", f"{self._stage}: {done:.2f} s", newest=True)
+        self._queue.send("message", f"{self._stage}: {done:.2f} s", newest=True)
 
     def watch(self, simulation: Simulation) -> None:
         """Show the grains, without their contacts."""
@@ -62,16 +62,16 @@ class SentProgress(Progress):
         if simulation is not self._watched:
             self._watched = simulation
             top = float(frame.grains["position"][..., 1].max() + 2.0 * simulation.scene.grains.radius.max())
-            self._outbox.send("settling", Scenery.of(self._loaded, self._folder, simulation).for_filling(top))
-        self._outbox.send("frame", (frame, 0.0), newest=True)
+            self._queue.send("settling", StaticScene.of(self._loaded, self._folder, simulation).for_filling(top))
+        self._queue.send("frame", (frame, 0.0), newest=True)
         self._sent = time.monotonic()
 
 
 class Worker:
     """The experiment's end of the pipe."""
 
-    def __init__(self, live: Live, pipe: Connection, outbox: Outbox) -> None:
-        self._live, self._pipe, self._outbox = live, pipe, outbox
+    def __init__(self, live: Live, pipe: Connection, queue: SendQueue) -> None:
+        self._live, self._pipe, self._queue = live, pipe, queue
         self._going, self._pieces, self._pace, self._ended = False, 0, 1.0, False
         self._changes: list[tuple[str, float]] = []
         self._most = max(1, GRAIN_STEPS_A_CALL // work(live.run.scene))
@@ -95,7 +95,7 @@ class Worker:
             try:
                 self._live.set(name, value)
             except LabError as error:
-                self._outbox.send("message", str(error))
+                self._queue.send("message", str(error))
         self._changes.clear()
         begun = time.monotonic()
         self._live.advance(self._listen, self._most)
@@ -120,7 +120,7 @@ class Worker:
             self._listen()
 
     def _send(self) -> None:
-        self._outbox.send("frame", (self._live.frame(), min(self._factor, self._pace)), newest=True)
+        self._queue.send("frame", (self._live.frame(), min(self._factor, self._pace)), newest=True)
         self._sent = time.monotonic()
 
     def _listen(self) -> None:
@@ -148,9 +148,9 @@ class Worker:
             rows = self._live.recorder.rows
             Recorder(folder, samples=rows[0], frames=rows[1]).close()
         except (LabError, OSError) as error:
-            self._outbox.send("message", f"nothing was kept: {error}")
+            self._queue.send("message", f"nothing was kept: {error}")
             return
-        self._outbox.send("kept", folder)
+        self._queue.send("kept", folder)
 
 
 def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: int) -> None:
@@ -158,24 +158,24 @@ def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: 
     for number in set(SIGNALS) - {signal.SIGTERM}:
         signal.signal(number, signal.SIG_IGN)  # the window ends this process when it closes
     runtime.use_cores(cores)
-    outbox = Outbox(pipe)
+    queue = SendQueue(pipe)
     try:
-        _run(name, overrides, folder, pipe, outbox)
+        _run(name, overrides, folder, pipe, queue)
     except (LabError, BadState, Unavailable) as error:
-        outbox.send("over", str(error))
+        queue.send("over", str(error))
     except (EOFError, BrokenPipeError, ConnectionResetError, KeyboardInterrupt):  # the window is gone or ends this
         pass
-    outbox.finish()
+    queue.finish()
 
 
-def _run(name: str, overrides: Mapping, folder: Path, pipe: Connection, outbox: Outbox) -> None:
+def _run(name: str, overrides: Mapping, folder: Path, pipe: Connection, queue: SendQueue) -> None:
     loaded = load(name, overrides)
     prepared = steerable(loaded)
-    with Live(prepared, folder, SentProgress(outbox, prepared, folder)) as live:
+    with Live(prepared, folder, SentProgress(queue, prepared, folder)) as live:
         handle_signals(patient=True)  # not before: while nothing is recorded, SIGTERM may end it at once
-        outbox.send("ready", (Scenery.of(prepared, folder, live.simulation), own_motion(loaded.resolved)))
+        queue.send("ready", (StaticScene.of(prepared, folder, live.simulation), own_motion(loaded.resolved)))
         try:
-            Worker(live, pipe, outbox).serve()
+            Worker(live, pipe, queue).serve()
         except BadState as error:
             live.close(f"stopped: {error}")
             raise

@@ -212,7 +212,7 @@ def test_a_bug_is_not_hidden(monkeypatch):
 
 def test_render_passes_on_all_options(monkeypatch):
     monkeypatch.setattr("lab.cli.pictures.check_recording", lambda _: None)
-    monkeypatch.setattr("lab.paint.reel.batches.batches_for", lambda *_: 1)
+    monkeypatch.setattr("lab.paint.edit.batches.batches_for", lambda *_: 1)
     calls = stand_in(monkeypatch, "lab.paint.video", "render_recording", Path("out.mp4"))
     sys.modules["lab.paint.video"].target_of = lambda path, out, png: out or path
     done = call("render", "there", "--out", "out.mp4", "--colour", "layer", "--frame", "earth",

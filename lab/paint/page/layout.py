@@ -1,7 +1,7 @@
 """Where everything stands on a page, for any size: boxes that do not overlap and lie within the picture.
 
 Lengths are in units u, which follow from the size, so that pages of one shape are alike in all sizes. A wide page has a
-panel with readings, plot and legend at the right; a square and an upright one have it below the stage.
+panel with readings, plot and legend at the right; a square and an upright one have it below the view.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ SQUARE, NARROW, LOWEST = (
     42.0,
     36.0,
     18.0,
-)  # u, least width of a square and of an upright page, and height of the stage's part
+)  # u, least width of a square and of an upright page, and height of the view's part
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class Needs:
 
 @dataclass(frozen=True)
 class Layout:
-    """The boxes of a page by name, pixels a unit, and the part of the picture behind the stage.
+    """The boxes of a page by name, pixels a unit, and the part of the picture behind the view.
 
-    Boxes: title, stage, scale, note, clock, readings, plots, and where they are needed band, dial, inset, legend.
+    Boxes: title, view, scale, note, clock, readings, plots, and where they are needed band, dial, inset, legend.
     """
 
     boxes: Mapping[str, Box]
@@ -84,7 +84,7 @@ def _wide(width: int, height: int, needs: Needs) -> Layout:
 
 
 def _stacked(width: int, height: int, needs: Needs, upright: bool) -> Layout:
-    """The panel below the stage: upright all in one column, else the readings and the legend beside the plots."""
+    """The panel below the view: upright all in one column, else the readings and the legend beside the plots."""
     head = max(_heading(0.0, 0.0, 99.0, needs)["readings"][3], DIAL * needs.dial)
     legend, inset = (LEGEND + GAP) * needs.legend, (INSET + GAP) * needs.inset
     plots = PLOT * (1.0 + 0.6 * (needs.plots - 1))
@@ -110,14 +110,14 @@ def _stacked(width: int, height: int, needs: Needs, upright: bool) -> Layout:
 
 
 def _of_stage(across: float, down: float, needs: Needs) -> dict[str, tuple]:
-    """The title, the stage, the band on it, and the scale and the note below it, in a part of the page this large."""
+    """The title, the view, the band on it, and the scale and the note below it, in a part of the page this large."""
     foot, middle = down - MARGIN, 0.5 * across
     low = foot - 1.6 * TEXT - 0.5
     boxes = {"band": (MARGIN, low - BAND, across - MARGIN, low)} if needs.band else {}
     low -= (BAND + 0.3) * needs.band
     return boxes | {
         "title": (MARGIN, MARGIN, across - MARGIN, MARGIN + 1.9 * TITLE),
-        "stage": (MARGIN, MARGIN + 1.9 * TITLE + 0.5, across - MARGIN, low),
+        "view": (MARGIN, MARGIN + 1.9 * TITLE + 0.5, across - MARGIN, low),
         "scale": (MARGIN, foot - 1.6 * TEXT, middle - 0.5 * GAP, foot),
         "note": (middle + 0.5 * GAP, foot - 1.6 * TEXT, across - MARGIN, foot),
     }

@@ -13,9 +13,9 @@ from lab.base.errors import LabError
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.studies.engine import choose
+from lab.studies.reproduce.cached import read_cached
 from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.experiment import Experiment
-from lab.studies.reproduce.findings import read_findings
 from lab.studies.reproduce.report import kept_file, write_page, write_report
 from lab.studies.reproduce.runs import Batch, errands
 from lab.studies.reproduce.workers import carry_out_all
@@ -43,7 +43,7 @@ def reproduce(
     chosen = [name for name in chosen if _can_run(known[name], name, quick, names)]
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     folders = places(known, work, quick)
-    told = read_findings(kept_file(report, out, quick), known, quick)
+    told = read_cached(kept_file(report, out, quick), known, quick)
     if page_only:
         return write_page(report, known, told, out, quick)
     removed = [name for name in told if not any(folder.exists() for folder in folders[name].values())]

@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from lab.studies.reproduce import registry
 from lab.studies.reproduce.columns import Column, table
 from lab.studies.reproduce.compare import ALL, LAST, Claim, rows
-from lab.studies.reproduce.experiment import Experiment, Found, Kind, Told, Tolerance, all_against
+from lab.studies.reproduce.experiment import Experiment, Found, Kind, ReportSection, Tolerance, all_against
 from lab.studies.reproduce.runs import Batch
 
 FOLDER = Path(__file__).parents[1] / "claims"
@@ -76,7 +76,7 @@ class Stated(Strict):
 
     `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `registry.FIGURES` by `by`,
     with its arguments; `columns` are those of a table of runs of water, or the name of
-    columns that experiments share; `tell` is one of `registry.TELLS`, which gives
+    columns that experiments share; `report` is one of `registry.SECTIONS`, which gives
     rows, figure and table. `needs` is the measured series without which it cannot be run (`lab.base.data`). `kind` is
     that of all rows that have none of their own.
     """
@@ -94,7 +94,7 @@ class Stated(Strict):
     rows: list[dict] = []
     columns: list[Column] | str = []
     figure: dict[str, object] = {}
-    tell: str = ""
+    report: str = ""
     needs: str = ""
     kind: Kind | None = None
 
@@ -154,19 +154,19 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
             if one.only != other
         }
 
-    def tell(found: Found) -> Told:
-        if stated.tell:
-            told = registry.TELLS[stated.tell](found)
+    def report(found: Found) -> ReportSection:
+        if stated.report:
+            told = registry.SECTIONS[stated.report](found)
             return replace(told, rows=all_against(told.rows, stated.kind))
         draw = {key: value for key, value in stated.figure.items() if key != "by"}
         figure = registry.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
         further = table(columns, found) if columns else ()
-        return Told(all_against(rows(claims, found, source.tolerance), stated.kind), figure, further)
+        return ReportSection(all_against(rows(claims, found, source.tolerance), stated.kind), figure, further)
 
     told = "name", "title", "section", "states", "lost", "why", "question", "needs"
     words = {name: getattr(stated, name) for name in told}
     shown = stated.shown.run, stated.shown.at
-    return Experiment(batches=batches, tell=tell, shown=shown, point=stated.shown.point, **words)
+    return Experiment(batches=batches, report=report, shown=shown, point=stated.shown.point, **words)
 
 
 def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], source: Source) -> None:
@@ -180,7 +180,7 @@ def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], sou
         "tolerance": ([claim.within for claim in claims], source.tolerance),
         "function of rows": ([claim.by for claim in claims], registry.ROWS),
         "figure": ([stated.figure.get("by", "")], registry.FIGURES),
-        "function": ([stated.tell], registry.TELLS),
+        "function": ([stated.report], registry.SECTIONS),
     }
     for what, (used, known) in names.items():
         if missing := {*filter(None, used)} - {*known}:

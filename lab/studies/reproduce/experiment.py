@@ -54,7 +54,7 @@ def all_against(rows: Iterable[Row], kind: Kind | None) -> list[Row]:
 
 
 @dataclass(frozen=True)
-class Told:
+class ReportSection:
     """The results of an experiment: rows, the figure, and a further table, its header first."""
 
     rows: Sequence[Row]
@@ -66,9 +66,9 @@ class Told:
 class Experiment:
     """`states` says in words what the source (its `section`) reports; `batches(quick)` what is run, by name.
 
-    `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
-    leave out; `shown` is the batch of which a `point`, by its number, mostly the last, or by a value of the grid, is
-    pictured, at this fraction of its time; `why` explains how to read the rows, and why they differ from the source
+    `report` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick
+    runs leave out; `shown` is the batch of which a `point`, by its number, mostly the last, or by a value of the grid,
+    is pictured, at this fraction of its time; `why` explains how to read the rows, and why they differ from the source
     where they do; `question` says what is not known of that; `needs` names the measured series without which it cannot
     be run (`lab.base.data`).
     """
@@ -78,7 +78,7 @@ class Experiment:
     section: str
     states: str
     batches: Callable[[bool], Mapping[str, Batch]]
-    tell: Callable[[Found], Told]
+    report: Callable[[Found], ReportSection]
     lost: str
     shown: tuple[str, float]
     why: str = ""

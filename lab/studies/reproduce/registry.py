@@ -1,14 +1,14 @@
 """The names that claims may use for what needs code.
 
 A row names a number (`of`) that no measure gives, or a function that gives rows (`by`); an experiment names the
-function that draws its figure (`by`), or the one that tells all of it (`tell`).
+function that draws its figure (`by`), or the one that tells all of it (`report`).
 """
 
 from collections.abc import Callable, Mapping, Sequence
 
 from lab.measures.value import Value, over_worlds
 from lab.studies.reproduce import figures
-from lab.studies.reproduce.experiment import Found, Row, Told
+from lab.studies.reproduce.experiment import Found, ReportSection, Row
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import (
@@ -110,15 +110,15 @@ FIGURES: Mapping[str, Callable] = {
     "roll in four ways": four_ways.figure,
     "tank tuning": tuning.figure,
 }
-TELLS: Mapping[str, Callable[[Found], Told]] = {
-    "section": section.tell,
-    "damping": damping.tell,
-    "capsizes": capsizes.tell,
-    "low sides": low_sides.tell,
-    "map": low_sides.tell_map,
-    "map with a tank": low_sides.tell_tank,
+SECTIONS: Mapping[str, Callable[[Found], ReportSection]] = {
+    "section": section.report,
+    "damping": damping.report,
+    "capsizes": capsizes.report,
+    "low sides": low_sides.report,
+    "map": low_sides.report_map,
+    "map with a tank": low_sides.report_tank,
     "convergence": prismatic.convergence,
     "thirty seconds": prismatic.thirty_seconds,
     "repeated impacts": impact.repeats,
-    "response": response.tell,
+    "response": response.report,
 }

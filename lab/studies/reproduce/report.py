@@ -13,10 +13,10 @@ from lab.recording import open_recording
 from lab.report.kept import Made, processor
 from lab.report.page import render, save_figure
 from lab.report.plots import STYLE
+from lab.studies.reproduce.cached import CachedResult, asked, read_cached, write_cached
 from lab.studies.reproduce.claims import reports
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Experiment, Kind, Row
-from lab.studies.reproduce.findings import Finding, asked, read_findings, write_findings
 from lab.studies.reproduce.runs import Outcome, outcomes
 
 PICTURE = (640, 360)  # pixels
@@ -32,19 +32,19 @@ def write_report(
     ended: the folders of the batches of each. Beside the page are its pictures, and NAME.json with the findings.
     """
     out.mkdir(parents=True, exist_ok=True)
-    kept = read_findings(kept_file(name, out, quick), experiments, quick)
+    kept = read_cached(kept_file(name, out, quick), experiments, quick)
     for one, folders in ended.items():
         found = {key: outcomes(folder) for key, folder in folders.items()}
         if all(found.values()):
             files = out / f"{page_name(name, quick)}-{one}"
             kept[one] = _finding(files, experiments[one], found, command_of(name, quick), quick)
     findings = {one: kept[one] for one in experiments if one in kept}
-    write_findings(kept_file(name, out, quick), findings)
+    write_cached(kept_file(name, out, quick), findings)
     return write_page(name, experiments, findings, out, quick)
 
 
 def write_page(
-    name: str, experiments: Mapping[str, Experiment], findings: Mapping[str, Finding], out: Path, quick: bool
+    name: str, experiments: Mapping[str, Experiment], findings: Mapping[str, CachedResult], out: Path, quick: bool
 ) -> Path:
     """Write the page from findings, those that differ most first; returns its file."""
     told = sorted(findings, key=lambda one: _badness(findings[one].rows), reverse=True)
@@ -85,12 +85,12 @@ def command_of(report: str, quick: bool) -> str:
 
 def _finding(
     files: Path, experiment: Experiment, found: Mapping[str, list[Outcome]], command: str, quick: bool
-) -> Finding:
+) -> CachedResult:
     """What the outcomes tell; its figure and picture are saved by names that begin with `files`."""
     with matplotlib.rc_context(STYLE):
-        told = experiment.tell(found)
+        told = experiment.report(found)
     runs = [one for batch in found.values() for one in batch]
-    return Finding(
+    return CachedResult(
         asked=asked(experiment.batches(quick)),
         rows=tuple(told.rows),
         stopped=tuple((one.folder.name, one.status) for one in runs if one.status != "complete"),
@@ -120,7 +120,7 @@ def _badness(rows: Sequence[Row]) -> tuple[int, int]:
     return differ, open_ones
 
 
-def _overview(experiment: Experiment, finding: Finding | None, quick: bool) -> list[object]:
+def _overview(experiment: Experiment, finding: CachedResult | None, quick: bool) -> list[object]:
     """The line of an experiment."""
     if finding is None:
         why = "not run" if experiment.batches(quick) else "not among the quick ones"

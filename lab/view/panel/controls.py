@@ -9,7 +9,7 @@ from lab.preset.fields import taken_by
 from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import spacing
 from lab.preset.units import parse
-from lab.view.panel.swell import RANDOM
+from lab.view.panel.sea_controls import RANDOM
 from solvers.machine.marks import Usual
 from solvers.scene import Scene
 

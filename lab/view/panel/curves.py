@@ -1,4 +1,4 @@
-"""The curves of the small plot over the stage, one function each, up to the frame that is shown."""
+"""The curves of the small plot over the view, one function each, up to the frame that is shown."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -25,7 +25,7 @@ def test_anti_roll_tank_by_hand():
     found, moment = of(ART), 1.0 * 13.699**3 / 12.0 * 2.8
     assert found.free_surface == pytest.approx(moment, rel=1e-6)
     assert found.displacement == pytest.approx(1.025 * (13.7088 * 3.9984 - 1.48**2) * 27.8, rel=1e-6)
-    assert found.solid - found.metacentric_height == pytest.approx(moment / found.displacement, rel=1e-6)
+    assert found.solid_gm - found.metacentric_height == pytest.approx(moment / found.displacement, rel=1e-6)
     heel = np.radians(20.0)
     righting = float(found.levers.at(heel))
     bare = found.form.righting_levers(found.displacement, found.water, [heel], (0.0, found.gravity_height))
@@ -60,7 +60,7 @@ def test_bare_ship_has_the_weight_of_her_water():
     water = 1000.0 * 0.8 * 0.19 * 0.5
     whole = 1000.0 * 2.546 * 0.108
     assert found.gravity_height == pytest.approx(((whole - water) * 0.14 + water * 0.315) / whole, rel=1e-3)
-    assert found.solid == pytest.approx(0.054 + 1.0 / 12.0 / 0.108 - found.gravity_height, rel=2e-3)
+    assert found.solid_gm == pytest.approx(0.054 + 1.0 / 12.0 / 0.108 - found.gravity_height, rel=2e-3)
     assert found.free_surface == pytest.approx(0.8**3 / 12.0 * 0.5, rel=1e-6)
 
 

@@ -121,12 +121,12 @@ def test_deck_edge_and_opening_of_a_box():
     """Wall-sided: tan φ = freeboard over half the breadth, and (z − T)/y of an opening."""
     opening = {"opening": np.array([[65.0, 12.0, 12.0], [65.0, -5.0, 13.9]])}
     ship = of_box(points=opening)
-    assert np.tan(ship.deck) == pytest.approx((DEPTH - DRAUGHT) / HALF, rel=1e-6)
+    assert np.tan(ship.deck_edge_angle) == pytest.approx((DEPTH - DRAUGHT) / HALF, rel=1e-6)
     assert np.tan(ship.flooding) == pytest.approx((12.0 - DRAUGHT) / 12.0, rel=1e-6)
     port = of_box(tcg=-0.05, points=opening)
     assert port.side == "port" and port.flooding > ship.flooding  # the low one is to starboard
     edge = of_box(points={"deck": np.array([[0.0, HALF, 10.7]])})
-    assert np.tan(edge.deck) == pytest.approx(1.0 / HALF, rel=1e-6)
+    assert np.tan(edge.deck_edge_angle) == pytest.approx(1.0 / HALF, rel=1e-6)
 
 
 def test_deck_edge_of_a_flared_side_is_its_top():

@@ -74,7 +74,7 @@ def test_naval_sheets_have_the_angle_of_loll():
     draught, bm = 8.0, 27.0**2 / (12.0 * 8.0)
     mass, kg = 1.025 * 130.0 * 27.0 * draught, 0.5 * draught + bm + 0.1
     ship = Loaded(prism(box(27.0, 14.0), 130.0), Water(1025.0), Weights(mass, 65.0, 0.0, kg, 0.0))
-    assert abs(ship.list) == pytest.approx(loll(-0.1, bm), rel=1e-4)
+    assert abs(ship.heel_angle) == pytest.approx(loll(-0.1, bm), rel=1e-4)
     assert dict(facts(ship))["list"].startswith(f"{np.degrees(loll(-0.1, bm)):.1f} deg to ")
     assert "a loll: her GM is negative" in dict(facts(ship))["list"]
     assert not any(row.criterion.passed for row in sheet.rows(ship) if row.criterion.rule == "IS Code A 2.2.4")

@@ -38,7 +38,7 @@ def test_condition_by_hand(handysize):
     assert handysize.displacement == pytest.approx(1.025 * 27.0 * 9.7 * 130.7, rel=1e-9)
     assert handysize.metacentric_height == pytest.approx(4.85 + 27.0**2 / (12.0 * 9.7) - 9.11, rel=1e-9)
     assert handysize.assumed_arm == pytest.approx(0.342, abs=5e-4)
-    assert np.degrees(handysize.deck) == pytest.approx(np.degrees(np.arctan(4.3 / 13.5)), rel=1e-6)
+    assert np.degrees(handysize.deck_edge_angle) == pytest.approx(np.degrees(np.arctan(4.3 / 13.5)), rel=1e-6)
     assert handysize.cargo.stowage == pytest.approx(1.3, rel=0.03)  # so the preset's grains stow as it says
 
 

@@ -165,7 +165,7 @@ def test_the_axes_of_the_file_are_kept(tmp_path, monkeypatch):
     assert one.draughts[2] == pytest.approx(12000.0 / 1.025 / 2000.0, abs=0.02)  # her rudder carries 4 mm
     assert other.metacentric_height == pytest.approx(one.metacentric_height, rel=1e-6)
     assert other.levers.lever == pytest.approx(one.levers.lever, abs=1e-6)
-    assert (other.flooding, other.deck) == pytest.approx((one.flooding, one.deck), rel=1e-6)
+    assert (other.flooding, other.deck_edge_angle) == pytest.approx((one.flooding, one.deck_edge_angle), rel=1e-6)
     assert vars(other.exposed) == pytest.approx(vars(one.exposed), rel=1e-6)
 
 

@@ -5,11 +5,11 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.measures.ship_frozen import frozen
+from lab.paint.edit.frozen import frozen_bed
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from lab.paint.page.layout import overlap
-from lab.paint.reel.frozen import frozen_bed
-from lab.paint.scenery.cells import Room, lay_cells
+from lab.paint.scene.cells import Room, lay_cells
 from lab.preset.find import load
 from lab.preset.recorded import to_table
 from lab.recording import open_recording
@@ -101,30 +101,30 @@ def test_without_a_ship_there_is_nothing_to_freeze(tmp_path):
 @pytest.mark.parametrize("count", [1, 2, 5, 24])
 def test_cells_lie_in_the_stage_and_show_all_to_one_scale(count, filled):
     ground = np.array([-1.0, -0.5]), np.array([1.0, 0.5])
-    stage = (20, 40, 820, 640)
-    cells = lay_cells([ground] * count, stage, 10.0, Room(5.0, 18.0, 20.0, filled))
+    view = (20, 40, 820, 640)
+    cells = lay_cells([ground] * count, view, 10.0, Room(5.0, 18.0, 20.0, filled))
     assert len({camera.scale for camera in cells.cameras}) == 1
     for k, (camera, box) in enumerate(zip(cells.cameras, cells.boxes, strict=True)):
         (left, bottom), (right, top) = camera.pixels(np.array(ground))
         assert box[0] <= left and right <= box[2] and box[1] <= top and bottom <= box[3] - 20
-        assert stage[0] - 1 <= box[0] and box[2] <= stage[2] + 1 and box[3] <= stage[3] + 1
+        assert view[0] - 1 <= box[0] and box[2] <= view[2] + 1 and box[3] <= view[3] + 1
         assert not any(overlap(box, other) for other in cells.boxes[:k])
     edges = np.array(cells.boxes)
     reached = *edges[:, :1].min(axis=0), *edges[:, 2:].max(axis=0)
-    assert (reached == (stage[0], *stage[2:])) == filled or count == 1  # those of ships leave none of the stage empty
+    assert (reached == (view[0], *view[2:])) == filled or count == 1  # those of ships leave none of the view empty
 
 
 @pytest.mark.parametrize("count", [1, 2, 4, 5, 24])
 def test_names_stand_beside_beds_where_these_are_larger_so(count):
-    """Square beds in a wide stage have room at their sides; a name is left of its bed and on no other one."""
-    ground, stage = (np.array([-1.0, -1.0]), np.array([1.0, 1.0])), (20, 40, 820, 640)
-    above = lay_cells([ground] * count, stage, 10.0, Room(5.0, 18.0))
-    beside = lay_cells([ground] * count, stage, 10.0, Room(5.0, 18.0, beside=60.0))
+    """Square beds in a wide view have room at their sides; a name is left of its bed and on no other one."""
+    ground, view = (np.array([-1.0, -1.0]), np.array([1.0, 1.0])), (20, 40, 820, 640)
+    above = lay_cells([ground] * count, view, 10.0, Room(5.0, 18.0))
+    beside = lay_cells([ground] * count, view, 10.0, Room(5.0, 18.0, beside=60.0))
     assert beside.cameras[0].scale >= above.cameras[0].scale
     if count == 4:  # two rows, for which the height decides
         assert beside.cameras[0].scale > above.cameras[0].scale
     beds = [np.sort(camera.pixels(np.array(ground)), axis=0) for camera in beside.cameras]
     for x, y in beside.names if beside.width == 60.0 else ():
         name = np.array([[x, y - 13.0], [x + 60.0, y]])
-        assert stage[0] <= x and stage[1] <= y - 13.0
+        assert view[0] <= x and view[1] <= y - 13.0
         assert not any((name[0] < bed[1]).all() and (bed[0] < name[1]).all() for bed in beds)

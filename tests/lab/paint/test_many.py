@@ -12,10 +12,10 @@ from PIL import Image
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.paint import many
+from lab.paint.edit.batches import batches_for, join_folders, paint_batches
 from lab.paint.encoder import join_videos, says
 from lab.paint.many import Job, find_recordings, paint_all, plan
 from lab.paint.process import Ending, Painter
-from lab.paint.reel.batches import batches_for, join_folders, paint_batches
 from lab.paint.video import is_made, made_with, render_recording
 from tests.oracles.synthetic import frame, recorder, sample
 
@@ -132,7 +132,7 @@ def test_an_interrupt_ends_the_painters_and_leaves_no_torn_video(tmp_path, monke
     runs = [made(tmp_path / name, frames=100) for name in ("a", "b")]
     pids = []
 
-    class Counted(many._Studio):
+    class Counted(many._PainterPool):
         """It is interrupted after some pictures."""
 
         def _take(self, painter, answer):
@@ -141,7 +141,7 @@ def test_an_interrupt_ends_the_painters_and_leaves_no_torn_video(tmp_path, monke
                 raise KeyboardInterrupt
             super()._take(painter, answer)
 
-    monkeypatch.setattr(many, "_Studio", Counted)
+    monkeypatch.setattr(many, "_PainterPool", Counted)
     with pytest.raises(KeyboardInterrupt), Progress(quiet=True) as progress:
         paint_all([Job(run, run / "video.mp4") for run in runs], SMALL, progress)
     assert pids and all([one.name for one in run.iterdir()] == ["recording.h5"] for run in runs)

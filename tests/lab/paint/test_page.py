@@ -11,7 +11,7 @@ from lab.paint.footage import open_footage
 from lab.paint.page.layout import Needs, lay_out, overlap, within
 from lab.paint.page.theme import THEMES, contrast, luminance
 from lab.paint.painter import Camera
-from lab.paint.scenery.afloat import Afloat
+from lab.paint.scene.floating_ship import FloatingShip
 from lab.paint.sea import Sea
 from lab.preset.find import load
 from lab.preset.recorded import to_table
@@ -77,7 +77,7 @@ def test_texts_lie_in_their_boxes_and_none_covers_another_or_the_stage(runs, wha
                 assert picture.shape[:2] == size[::-1] and {"title", "scale"} <= film.written.keys()
                 slack = 0.012 * max(size) if max(size) < 700 else 4
                 for name, text in film.written.items():
-                    slot = {"bed": "stage", "reading": "readings"}.get(name.split()[0], name)
+                    slot = {"bed": "view", "reading": "readings"}.get(name.split()[0], name)
                     assert within(text, film.layout[slot], slack), (size, name)
                     others = film.layout.keys() - {slot}
                     assert not [other for other in others if overlap(shrunk(text), film.layout[other])], (size, name)
@@ -143,14 +143,14 @@ def test_a_ship_beyond_her_box_is_cut_off_and_else_is_the_same(monkeypatch):
     def painted(box):
         page = np.full((360, 640, 3), 7, dtype=np.uint8)
         still = Camera(600.0, (300.0, 200.0))
-        afloat = Afloat(sea, still.carried(np.array([0.0, 0.0, 0.5])), still, 0.4, 4.0, 9.0)
+        afloat = FloatingShip(sea, still.carried(np.array([0.0, 0.0, 0.5])), still, 0.4, 4.0, 9.0)
         afloat.paint(page, box, theme)
         return page
 
     free, cut = painted((10, 10, 600, 350)), painted((10, 10, 290, 350))
     np.testing.assert_array_equal(cut[10:350, 10:290], free[10:350, 10:290])
     assert (cut[:, 290:] == 7).all() and (free[10:350, 290:600] != 7).any()
-    monkeypatch.setattr(Afloat, "_keeps_within", lambda self, box: False)
+    monkeypatch.setattr(FloatingShip, "_keeps_within", lambda self, box: False)
     np.testing.assert_array_equal(painted((10, 10, 600, 350)), free)
 
 

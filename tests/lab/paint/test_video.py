@@ -307,7 +307,7 @@ def drive_arrow(picture):
 
 
 def coloured(picture, colour, off=12):
-    """Rows and columns of the stage's pixels of about that colour."""
+    """Rows and columns of the view's pixels of about that colour."""
     return np.nonzero((np.abs(picture - colour).max(axis=2) <= off)[:, :430])
 
 

@@ -67,14 +67,14 @@ def test_a_new_quantity_is_one_declaration_and_one_line_that_fills_it(tmp_path, 
         assert found.quantities["highest"] == HIGHEST and found.series["highest"].tobytes() == highest.tobytes()
 
 
-EVERY = {q.name: q for q in (*series_of(afloat=True), *frames_of(swell=True))}
+EVERY = {q.name: q for q in (*series_of(afloat=True), *frames_of(steered_sea=True))}
 
 
 def test_every_quantity_has_a_unit_and_a_label_for_each_component():
     for quantity in EVERY.values():
         assert quantity.unit and quantity.label and len(quantity.units) == quantity.width, quantity.name
         assert len(set(quantity.components)) == len(quantity.components)
-    lists = series_of(afloat=True), frames_of(swell=True), STEERING
+    lists = series_of(afloat=True), frames_of(steered_sea=True), STEERING
     assert all(len({q.name for q in listed}) == len(listed) for listed in lists)
 
 

@@ -26,10 +26,10 @@ from lab.preset.find import load
 from lab.report.kept import Made
 from lab.studies import reproduce as package
 from lab.studies.reproduce import experiments, registry, report, reproduce, runs, workers
+from lab.studies.reproduce.cached import CachedResult, asked, read_cached
 from lab.studies.reproduce.claims import FOLDER, read, reports
 from lab.studies.reproduce.estimates import Verdict, surely
-from lab.studies.reproduce.experiment import EXACT, Experiment, Row, Told, Tolerance, counted, observed, stated
-from lab.studies.reproduce.findings import Finding, asked, read_findings
+from lab.studies.reproduce.experiment import EXACT, Experiment, ReportSection, Row, Tolerance, counted, observed, stated
 from lab.studies.reproduce.grains import beds, outlines
 from lab.studies.reproduce.report import write_report
 from lab.studies.reproduce.runs import Batch, Outcome
@@ -86,7 +86,7 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
 
     def tell(found):
         numbers = [one["contact_number_start"] for one in found["rates"]]
-        return Told([observed("contacts", "none", ", ".join(map(counted, numbers)), None)])
+        return ReportSection([observed("contacts", "none", ", ".join(map(counted, numbers)), None)])
 
     batches = {
         "one": Batch("tilting/quick", SMALL),
@@ -242,9 +242,9 @@ def test_a_report_counts_its_verdicts_and_shows_each_with_its_tolerance(tmp_path
     rows = [stated(name, 20.0, over_worlds(angles, "deg"), BY_EYE) for name, angles in beds.items()]
     rows = [row.against(kind) for row, kind in zip(rows, ("measured", "measured", "sign"), strict=True)]
     rows = [*rows, observed("seen", "", "this", None).against("measured")]
-    finding = Finding("asked", rows, (), 1.0, 1.0, "", "", Made("0.1.0"))
+    finding = CachedResult("asked", rows, (), 1.0, 1.0, "", "", Made("0.1.0"))
     tried = Experiment(
-        "tried", "A trial", "0.0", "20 deg.", lambda quick: {}, lambda found: Told([]), "much", ("", 1.0)
+        "tried", "A trial", "0.0", "20 deg.", lambda quick: {}, lambda found: ReportSection([]), "much", ("", 1.0)
     )
     text = report.write_page("granular", {"tried": tried}, {"tried": finding}, tmp_path, quick=False).read_text()
     assert "Of 3 statements held against the source 1 agree, 1 differ, and of 1 these beds cannot tell." in text
@@ -264,10 +264,10 @@ def test_the_page_begins_with_what_differs_most_and_its_explanation_follows_it(t
     tried, findings = {}, {}
     for name, angles in beds.items():
         row = stated("angle", 20.0, over_worlds(angles, "deg"), BY_EYE)
-        findings[name] = Finding("asked", [row], (), 1.0, 1.0, "", "", Made("0.1.0"))
+        findings[name] = CachedResult("asked", [row], (), 1.0, 1.0, "", "", Made("0.1.0"))
         words = f"Title of {name}", "0.0", "20 deg."
         tried[name] = Experiment(
-            name, *words, lambda quick: {}, lambda found: Told([]), "much", ("", 1.0), "Softer.", "How soft?"
+            name, *words, lambda quick: {}, lambda found: ReportSection([]), "much", ("", 1.0), "Softer.", "How soft?"
         )
     text = report.write_page("granular", tried, findings, tmp_path, quick=False).read_text()
     assert text.index("| Title of bad |") < text.index("| Title of good |")
@@ -461,7 +461,7 @@ def test_results_stored_under_another_rule_are_not_verdicts(tmp_path):
     }
     (tmp_path / "granular.json").write_text(json.dumps({"tilt-fill": finding}))
     with pytest.raises(LabError, match="remove it"):
-        read_findings(tmp_path / "granular.json", experiments("granular"), False)
+        read_cached(tmp_path / "granular.json", experiments("granular"), False)
 
 
 def test_the_tolerance_of_one_bed_is_no_more_than_the_scatter_of_beds():
@@ -490,7 +490,7 @@ def test_only_changes_of_a_presets_physics_require_a_new_run():
 def test_the_kept_results_in_the_gallery_are_of_the_present_experiments(report_name, name):
     """Also where presets called the sea water: how a preset is written runs nothing again."""
     kept = Path(__file__).parents[3] / "renders" / "gallery" / report_name / f"{report_name}.json"
-    assert name in read_findings(kept, {name: experiments(report_name)[name]}, quick=False)
+    assert name in read_cached(kept, {name: experiments(report_name)[name]}, quick=False)
 
 
 def test_a_page_alone_keeps_results_of_other_runs_in_their_file(tmp_path):

@@ -57,8 +57,8 @@ def test_a_bed_can_be_watched_while_it_settles(tmp_path, monkeypatch):
         lies = live.frame().grains["position"]
     words = [word for word, _ in said if word != "message"]
     assert words[0] == "settling" and words.count("settling") in (1, 2) and words.count("frame") > 5
-    scenery = next(what for word, what in said if word == "settling")
-    assert scenery.preset.ship is None and scenery.radius.shape == lies.shape[:2]
+    static = next(what for word, what in said if word == "settling")
+    assert static.preset.ship is None and static.radius.shape == lies.shape[:2]
     places = [what[0].grains["position"] for word, what in said if word == "frame"]
     heights = [place[..., 1].mean() for place in places]
     assert heights[0] > heights[-1] + 1e-3

@@ -11,7 +11,7 @@ from lab.assembly.scene import build
 from lab.preset.find import load
 from lab.view import footage as footages
 from lab.view import session as sessions
-from lab.view.footage import Scenery
+from lab.view.footage import StaticScene
 from lab.view.live import LiveFrame, own_motion, steerable
 from lab.view.overlays import force_strokes
 from lab.view.page import PLOT
@@ -61,8 +61,8 @@ def opened(monkeypatch, tmp_path):
     scene, place = build(live.resolved)
     preset = live.resolved
     plain = np.zeros(scene.grains.radius.shape, dtype=int), scene.outline, (), scene.grains.fixed, {}, None, 1e-5
-    scenery = Scenery(preset, PRESET, tmp_path, scene.grains.radius, *plain)
-    pipes[-1].send(("ready", (scenery, own_motion(loaded.resolved))))
+    static = StaticScene(preset, PRESET, tmp_path, scene.grains.radius, *plain)
+    pipes[-1].send(("ready", (static, own_motion(loaded.resolved))))
     for k in range(5):
         pipes[-1].send(("frame", (seen(place, 0.1 * k), 0.5)))
     session.tick()
@@ -324,7 +324,7 @@ def test_the_wheel_zooms_about_the_mouse(opened):
 
 def test_the_plot_does_not_hide_the_tank(opened):
     session, _, _ = opened
-    left, top, _, _ = session.page.stage
+    left, top, _, _ = session.page.view
     corners = session.page.tank_camera(session).pixels(session.footage.outline)
     width, height = (session.page.u(side) for side in PLOT)
     assert corners[:, 0].min() > left + width or corners[:, 1].min() > top + height
@@ -335,7 +335,7 @@ def test_long_sentences_stay_in_their_area(opened):
     quiet = session.picture()
     session.say("world 0: a grain moved farther in a step than it may; " * 9)
     changed = np.argwhere((session.picture() != quiet).any(axis=2))
-    left, _, right, bottom = session.page.stage
+    left, _, right, bottom = session.page.view
     assert changed[:, 0].min() >= bottom
     assert left < changed[:, 1].min() and changed[:, 1].max() < right
 
@@ -351,11 +351,11 @@ def test_keys_change_the_picture(opened, overlay):
 def test_a_settling_bed_is_shown_and_keys_do_no_harm(opened):
     """After a restart the grains fall into a tank with raised walls, and the controls do not act yet."""
     session, pipes, place = opened
-    scenery = session.footage.scenery
+    static = session.footage.static
     session.look.inset = "levers"  # which a ship had
     session.restart()
     assert session.settling and session.footage is None
-    made = replace(scenery, outline=scenery.outline * [1.0, 30.0]).for_filling(0.12)
+    made = replace(static, outline=static.outline * [1.0, 30.0]).for_filling(0.12)
     assert made.outline[:, 1].max() == 0.12 and len(made.open_edges) == 1  # no lid so high up that grains are specks
     for message in (
         ("message", "pouring …"),
@@ -379,7 +379,7 @@ def test_a_settling_bed_is_shown_and_keys_do_no_harm(opened):
     session.press(*at[0])
     session.release(*at[0])
     session.wheel(1.0, 600, 400)
-    pipes[-1].send(("ready", (scenery, {"tilt": 0.3})))
+    pipes[-1].send(("ready", (static, {"tilt": 0.3})))
     pipes[-1].send(("frame", (seen(place, 0.0), 0.5)))
     session.tick()
     assert session.going and not session.settling and len(session.footage) == 1

@@ -12,7 +12,7 @@ from lab.paint.water.gauges import hues_of
 from lab.paint.water.layer import DEEP, LIT
 from lab.preset.find import load
 from lab.view import session as sessions
-from lab.view.footage import Scenery
+from lab.view.footage import StaticScene
 from lab.view.live import Live, LiveFrame, own_motion, steerable
 from lab.view.panel.readings import readings
 from lab.view.session import Session
@@ -50,8 +50,8 @@ def opened(monkeypatch, tmp_path, preset):
     loaded = load(preset)
     live = steerable(loaded)
     scene, _ = build(live.resolved)
-    scenery = Scenery.of(live, tmp_path, SimpleNamespace(scene=scene, dt=1e-4))
-    there.send(("ready", (scenery, own_motion(loaded.resolved))))
+    static = StaticScene.of(live, tmp_path, SimpleNamespace(scene=scene, dt=1e-4))
+    there.send(("ready", (static, own_motion(loaded.resolved))))
     for k in range(5):
         there.send(("frame", (seen(scene.fluid.particles, 0.1 * k, 0.0), 0.5)))
         session.tick()  # a pipe holds a few frames only
@@ -72,7 +72,7 @@ def seen(drops, time, tilt, depth=0.1):
 
 def surface(session, picture):
     """Slope of the water's surface in the picture, upwards to the right."""
-    _, top, _, bottom = session.page.stage
+    _, top, _, bottom = session.page.view
     camera = session.page.tank_camera(session)
     (x0, _), (x1, _) = camera.pixels(np.array([[-0.15, 0.2], [0.1, 0.2]]))
     line = np.array(LIT) + np.linspace(0.0, 1.0, 40)[:, None] * (np.array(DEEP) - LIT)
@@ -124,7 +124,7 @@ def test_gauges_and_their_curves_have_one_colour(opened):
     hue = hues_of(session.footage.water)["port"]
     session.look.inset = "pressures"
     picture = session.picture()
-    left, top, _, _ = session.page.stage
+    left, top, _, _ = session.page.view
     x, y = session.page.tank_camera(session).pixels([[-0.2, 0.05]])[0].astype(int)
     there = np.abs(picture.astype(int) - hue).max(axis=2) < 12
     assert there[y - 8 : y + 9, x - 12 : x + 9].sum() > 30
@@ -133,7 +133,7 @@ def test_gauges_and_their_curves_have_one_colour(opened):
 
 def test_a_click_on_water_picks_nothing_and_other_cargo_is_refused(opened):
     session, _, _ = opened
-    left, _, right, bottom = session.page.stage
+    left, _, right, bottom = session.page.view
     middle = 0.5 * (left + right), 0.7 * bottom
     session.press(*middle)
     session.release(*middle)

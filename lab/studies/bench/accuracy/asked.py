@@ -86,7 +86,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         Differences are from the first row. In brackets: 95 % intervals. Cost: grain-steps, relative to the first
         row, steps that are doubled while grains are slow counted as two.""")
     for question in QUESTIONS[:1] if fast else QUESTIONS:
-        tell(page, question, work, fast)
+        report(page, question, work, fast)
 
 
 def study_ship(page: Page, work: Path, fast: bool) -> None:
@@ -96,10 +96,10 @@ def study_ship(page: Page, work: Path, fast: bool) -> None:
         grains of 8 mm for 3 mm and 20 s for 40 s: {BEDS} beds a row; the amplitude and the mean are those of the last
         ten periods, the largest roll that of the whole run. Rows, differences and cost are as above. The steps of a
         ship never double.""")
-    tell(page, SHIP, work, fast)
+    report(page, SHIP, work, fast)
 
 
-def tell(page: Page, question: Question, work: Path, fast: bool) -> None:
+def report(page: Page, question: Question, work: Path, fast: bool) -> None:
     """Add a table for each measure of a question, and its figure."""
     chosen = question.choices[:2] if fast else question.choices
     found = {name: answered(question, name, work / "asked", fast) for name in chosen}

@@ -17,7 +17,7 @@ from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW, canvas
 from lab.studies.reproduce.estimates import surely
-from lab.studies.reproduce.experiment import EXACT, Kind, Row, Told, observed
+from lab.studies.reproduce.experiment import EXACT, Kind, ReportSection, Row, observed
 from lab.studies.reproduce.figures import leading_number
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.rolls import DIGITS, FREQUENCY, PEAK, SIZE
@@ -143,7 +143,7 @@ def swung(
     return np.ma.masked_array(found, lost).mean(axis=0).filled(np.nan), lost.mean(axis=0)
 
 
-def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
+def report(found: Mapping[str, Sequence[Outcome]]) -> ReportSection:
     """Where each reading rolls most and capsizes, and how far the heap stands for the grains of the runs."""
     rows, maps = [], {}
     for reading in READINGS:
@@ -151,7 +151,7 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
         rows += _rows(reading.words, loose, frozen)
         maps[reading.words] = loose
     rows.append(_heap_beside_grains(found))
-    return Told(rows, _figure(maps))
+    return ReportSection(rows, _figure(maps))
 
 
 def _rows(words: str, loose: Scan, frozen: Scan) -> list[Row]:

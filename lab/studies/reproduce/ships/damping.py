@@ -12,7 +12,7 @@ from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW, canvas
 from lab.studies.reproduce.estimates import surely
-from lab.studies.reproduce.experiment import EXACT, Kind, Told, observed
+from lab.studies.reproduce.experiment import EXACT, Kind, ReportSection, observed
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.fixed_axis import roll_together
@@ -115,7 +115,7 @@ def safe(tried: Sequence[Damping], responses: Sequence[Response]) -> Damping | N
     return tried[first] if first < len(tried) else None
 
 
-def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
+def report(found: Mapping[str, Sequence[Outcome]]) -> ReportSection:
     """The dampings that give the source's peak, and whether she survives the higher waves with them; needs no runs."""
     barge = Barge(FREQUENCIES)
     rows, curves = [], {}
@@ -138,7 +138,7 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
     near = surely(abs(curves[ours].peak[0] - PEAK) <= DIGITS.within)
     said = f"largest with {ours.words}, as run"
     rows.append(observed(said, f"{PEAK:g} deg", _most(curves[ours]), near, DIGITS.words("deg")))
-    return Told(rows, _figure(curves))
+    return ReportSection(rows, _figure(curves))
 
 
 def _most(response: Response) -> str:

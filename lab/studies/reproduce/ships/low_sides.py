@@ -14,7 +14,7 @@ from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW, BLUE, canvas
 from lab.studies.reproduce.estimates import chance, surely
-from lab.studies.reproduce.experiment import EXACT, Row, Told, counted, observed
+from lab.studies.reproduce.experiment import EXACT, ReportSection, Row, counted, observed
 from lab.studies.reproduce.figures import SIZE, leading_number
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.capsizes import CARGO, NATURAL, REPOSES, scan, swung
@@ -35,7 +35,7 @@ WIDE = (8.0, 3.6)  # inches
 FINE = np.linspace(10.0, 35.0, 26), np.linspace(3.8, 5.4, 17)
 
 
-def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
+def report(found: Mapping[str, Sequence[Outcome]]) -> ReportSection:
     """In how many beds, and at how many of the heap's angles of repose, she was lost; and with frozen cargo."""
     runs, ship, rows = found["low sides"], low_ship(), []
     sizes = np.array([leading_number(one.setting[AMPLITUDE]) for one in runs])
@@ -44,7 +44,7 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
         size, heap = str(one.setting[AMPLITUDE]), f"lost with {100.0 * share:.0f} % of a heap's reposes"
         said = f"{_fates(one)}; {heap}; frozen {_frozen(one)}"
         rows.append(observed(f"{size}, {FREQUENCY:g} rad/s", SAYS.get(size, ""), said, None))
-    return Told(
+    return ReportSection(
         rows, _figure(sizes, [_lost(one) for one in runs], swung(ship, CURVE, np.full(len(CURVE), FREQUENCY))[1])
     )
 
@@ -89,10 +89,10 @@ def _frozen(one: Outcome) -> str:
     return next((f"{verb} at {when:.3g} s" for when, verb in found.items() if when is not None), "stands")
 
 
-def tell_map(found: Mapping[str, Sequence[Outcome]]) -> Told:
+def report_map(found: Mapping[str, Sequence[Outcome]]) -> ReportSection:
     """From which amplitude on she is lost with loose cargo, at each frequency; and with frozen cargo."""
     runs = found["low sides"]
-    return Told([*_edge(runs, "lost with loose cargo"), frozen_row(runs)], _map_figure(runs))
+    return ReportSection([*_edge(runs, "lost with loose cargo"), frozen_row(runs)], _map_figure(runs))
 
 
 def frozen_row(runs: Sequence[Outcome]) -> Row:
@@ -106,7 +106,7 @@ def frozen_row(runs: Sequence[Outcome]) -> Row:
     return observed("lost with frozen cargo", "not in 17 and 19 mm", says, alike, EXACT)
 
 
-def tell_tank(found: Mapping[str, Sequence[Outcome]]) -> Told:
+def report_tank(found: Mapping[str, Sequence[Outcome]]) -> ReportSection:
     """From which amplitude on she is lost, at each frequency, with the water in her tank loose and frozen."""
     rows = [row for name, runs in found.items() for row in _edge(runs, f"lost, {name}")]
     figure, panels = canvas(WIDE, 1, len(found), sharey=True, squeeze=False)
@@ -129,7 +129,7 @@ def tell_tank(found: Mapping[str, Sequence[Outcome]]) -> Told:
     }.items():
         panels[0][0].plot([], [], "o", color=BLUE, fillstyle=filled, label=label)
     figure.legend(loc=BELOW, ncols=3)
-    return Told(rows, figure)
+    return ReportSection(rows, figure)
 
 
 def _cut(one: Outcome) -> bool:

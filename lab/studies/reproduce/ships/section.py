@@ -11,7 +11,7 @@ from lab.measures.value import Value
 from lab.preset.sections.sea import Sea
 from lab.report.plots import BELOW, BLUE, GREY, canvas
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.experiment import Found, Row, Told, Tolerance, observed, stated
+from lab.studies.reproduce.experiment import Found, ReportSection, Row, Tolerance, observed, stated
 from lab.studies.reproduce.figures import leading_number
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.rolls import FREQUENCY
@@ -51,7 +51,7 @@ MARGIN = "20 %: ours, as one run was measured at each frequency"
 LIGHT, WARM = "#9ecae1", "#f4a582"
 
 
-def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
+def report(found: Mapping[str, Sequence[Outcome]]) -> ReportSection:
     """Rows of the comparison and of what explains the peak, and a table of all terms; it needs no runs."""
     base, ours = potential_flow(), estimated()
     frequencies = np.array([one.frequency for one in MEASUREMENTS])
@@ -64,7 +64,7 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
     rows += explained(steady, train, with_term)
     change = panel_change(160, np.unique(frequencies)).max()
     rows.append(observed("twice as many panels", "", f"changes no amplitude by more than {100.0 * change:.1f} %", None))
-    return Told(rows, _figure(base), _table(steady, small, train, with_term))
+    return ReportSection(rows, _figure(base), _table(steady, small, train, with_term))
 
 
 def compared(ours: np.ndarray) -> list[Row]:

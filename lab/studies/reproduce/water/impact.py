@@ -18,7 +18,7 @@ from scipy.special import chdtri
 from lab.report.numbers import plus_minus
 from lab.report.plots import BELOW, BLUE, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.experiment import Found, Row, Told, observed
+from lab.studies.reproduce.experiment import Found, ReportSection, Row, observed
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.costs import COSTS, cost
@@ -165,7 +165,7 @@ NUMBERS = {
 }
 
 
-def repeats(found: Found) -> Told:
+def repeats(found: Found) -> ReportSection:
     """How first impacts scatter over the starts of each run: means and standard deviations over single runs."""
     rows, cells = [], []
     for label, outcomes in found.items():
@@ -176,7 +176,7 @@ def repeats(found: Found) -> Told:
         if len(hits) > 1:
             rows.append(_scatter(label, np.array([hit.peak for hit in hits])))
     heads = [*COSTS, "impacts", "arrival, s", "peak, kPa", "mean over 10 ms, kPa", "impulse, Pa s"]
-    return Told(rows, None, [heads, *cells])
+    return ReportSection(rows, None, [heads, *cells])
 
 
 def _spread(values: Sequence[float], digits: int) -> str:

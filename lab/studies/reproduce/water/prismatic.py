@@ -18,7 +18,7 @@ from lab.preset.sections.water.liquid import depth, spacing
 from lab.report.numbers import with_error
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.experiment import Found, Row, Told, observed
+from lab.studies.reproduce.experiment import Found, ReportSection, Row, observed
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.water.costs import COSTS, cost
@@ -150,7 +150,7 @@ def told_peak(one: Outcome, gauge: str) -> str:
     return DRY if value.value is None else with_error(value.value, value.uncertainty, "Pa") + value.note
 
 
-def convergence(found: Found) -> Told:
+def convergence(found: Found) -> ReportSection:
     """Runs by spacing, or by speed of sound, beside the finest, with the fastest sound."""
     runs = {label: outcomes[0] for label, outcomes in found.items()}
     pressures = {label: pressure(one) for label, one in runs.items()}
@@ -166,7 +166,7 @@ def convergence(found: Found) -> Told:
         )
     heads = [*COSTS, "mean at P1", f"mean peak of {CYCLES} cycles", f"off {finest}", "mean cycle off"]
     heads += [*(f"mean peak at {gauge}" for gauge in UPPER), "highest water"]
-    return Told(_falls(runs, pressures, finest), _figure(pressures), [heads, *cells])
+    return ReportSection(_falls(runs, pressures, finest), _figure(pressures), [heads, *cells])
 
 
 def _off(own: Pressure, finest: Pressure) -> list[str]:
@@ -203,7 +203,7 @@ def _row(says: str, source: str, off: Mapping[str, float]) -> list[Row]:
     return [observed(says, source, ours, Verdict.AGREES if falls else Verdict.DIFFERS, "each run is nearer")]
 
 
-def thirty_seconds(found: Found) -> Told:
+def thirty_seconds(found: Found) -> ReportSection:
     """What THIRTY seconds would cost, by runs of a part of a second, beside the source's hours."""
     runs = {label: outcomes[0] for label, outcomes in found.items()}
     hours = HOURS[any(one.recording.preset.air for one in runs.values())]
@@ -212,7 +212,9 @@ def thirty_seconds(found: Found) -> Told:
         whole = THIRTY * one.cost["seconds"]["run"] / float(one.recording.series["time"][-1])
         told = f"{whole / 60.0:.0f} min" if whole < HOURLY else f"{whole / 3600.0:.0f} h"
         cells.append([*cost(label, one), told, f"{3600.0 * hours / whole:.2g}"])
-    return Told([], None, [[*COSTS, f"{THIRTY:.0f} s would take", f"the source's {hours:g} h over that"], *cells])
+    return ReportSection(
+        [], None, [[*COSTS, f"{THIRTY:.0f} s would take", f"the source's {hours:g} h over that"], *cells]
+    )
 
 
 def roof(one: Outcome) -> str:

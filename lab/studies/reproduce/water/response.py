@@ -25,7 +25,7 @@ from lab.measures.steady import harmonics, steady_part
 from lab.preset.sections.water.liquid import depth, spacing
 from lab.report.plots import BELOW, BLUE, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.experiment import Found, Row, Told
+from lab.studies.reproduce.experiment import Found, ReportSection, Row
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 from solvers.ship.potential.sloshing import MODES, SloshingLiquid
@@ -118,13 +118,13 @@ def first_mode(found: Response, near: float) -> tuple[float, float]:
     return near * np.sqrt(own), near * np.sqrt(max(own + 0.5 * slope / bend, 0.0) / 2.0)
 
 
-def tell(found: Found) -> Told:
+def report(found: Found) -> ReportSection:
     """The first mode and the loads of each run beside linear theory; the verdicts are on the finest run."""
     runs = {label: response(outcomes) for label, outcomes in found.items()}
     theory = tank(next(iter(found.values()))[0])
     finest = min(found, key=lambda label: spacing(found[label][0].recording.preset))
     rows = [row for label, one in runs.items() for row in _rows(label, one, theory, label == finest)]
-    return Told(rows, _figure(runs, theory), _table(runs, theory))
+    return ReportSection(rows, _figure(runs, theory), _table(runs, theory))
 
 
 def _rows(label: str, one: Response, theory: Tank, judged: bool) -> list[Row]:

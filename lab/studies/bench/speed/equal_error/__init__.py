@@ -70,7 +70,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     effort = HASTY if fast else Effort()
     page.section("Beside other codes at equal error")
     say_how(page, effort)
-    tell(page, work, effort, 1, fast)
+    report(page, work, effort, 1, fast)
 
 
 def study_large(page: Page, work: Path, fast: bool) -> None:
@@ -79,10 +79,10 @@ def study_large(page: Page, work: Path, fast: bool) -> None:
     page.section("Beside other codes at equal error, a large bed")
     page.say(f"""As above, but {effort.copies} copies of the small bed side by side in one tank, for {effort.few_steps}
         steps of each code from the same places and speeds.""")
-    tell(page, work, effort, effort.copies, fast)
+    report(page, work, effort, effort.copies, fast)
 
 
-def tell(page: Page, work: Path, effort: Effort, copies: int, fast: bool) -> None:
+def report(page: Page, work: Path, effort: Effort, copies: int, fast: bool) -> None:
     """Time what is not timed yet, and add the table; or say that there is nobody to compare with."""
     codes = colliders()
     if len(codes) == 1:

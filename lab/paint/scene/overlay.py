@@ -8,7 +8,7 @@ from lab.paint.footage import Bed
 from lab.paint.forces.chains import THICKEST, newtons, paint_chains, typical_force
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera
-from lab.paint.scenery.trails import paint_trails
+from lab.paint.scene.trails import paint_trails
 
 TRAILS = 6  # frames that a trail goes back
 PALE = 0.62  # how far grains under force chains go towards the colour of the empty tank

@@ -1,4 +1,4 @@
-"""The stage of a picture: the beds side by side in one scale, with all that stands around them."""
+"""The view of a picture: the beds side by side in one scale, with all that stands around them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ from lab.paint.footage import Bed
 from lab.paint.page.layout import TEXT, Box
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
-from lab.paint.scenery.afloat import Afloat
-from lab.paint.scenery.backdrop import paint_sky
-from lab.paint.scenery.cells import Cells, Room, lay_cells
-from lab.paint.scenery.drive import paint_arrow
-from lab.paint.scenery.overlay import Overlay
-from lab.paint.scenery.ship import silhouette
+from lab.paint.scene.backdrop import paint_sky
+from lab.paint.scene.cells import Cells, Room, lay_cells
+from lab.paint.scene.drive import paint_arrow
+from lab.paint.scene.floating_ship import FloatingShip
+from lab.paint.scene.overlay import Overlay
+from lab.paint.scene.ship import silhouette
 from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
 
@@ -29,12 +29,12 @@ AIR = 0.6  # u, between a name and what is to its right
 STILL = 1e-9  # m, rad: poses that differ by less are told once, for all beds
 NAME, BAND = 1.8, 2.6  # u, for the name of a bed, and for the loss of a ship among several
 FOLLOW = 0.35  # of her breadth and height: a ship that goes farther sideways or up is followed by the camera
-HOUSE = 1.0, 0.8  # of the superstructure's height that has room in the stage, of one ship alone and of several
+HOUSE = 1.0, 0.8  # of the superstructure's height that has room in the view, of one ship alone and of several
 
 
 @dataclass(frozen=True)
-class Setting:
-    """How a stage is painted: its box and the canvas around it in pixels, pixels a unit, theme, frame and overlay."""
+class ViewSetting:
+    """How a view is painted: its box and the canvas around it in pixels, pixels a unit, theme, frame and overlay."""
 
     box: Box
     canvas: Box
@@ -44,11 +44,11 @@ class Setting:
     overlay: str = "none"
 
 
-class Stage:
+class SceneView:
     """Beds in one scale; rows (K, F): of their frames, maybe between two, pose (F, K, 3): at the pictures' times."""
 
     def __init__(
-        self, beds: Sequence[Bed], setting: Setting, rows: np.ndarray, pose: np.ndarray, time: np.ndarray
+        self, beds: Sequence[Bed], setting: ViewSetting, rows: np.ndarray, pose: np.ndarray, time: np.ndarray
     ) -> None:
         self.beds, self.setting, self._unit, self._theme = list(beds), setting, setting.unit, setting.theme
         self._rows, self._time = rows, time
@@ -69,7 +69,7 @@ class Stage:
         self.marks: dict[int, Marks] = {}
         self.overlay = Overlay(setting.overlay, self.beds, rows, setting.theme)
 
-    def dress(self, grains: Colouring | None, water: WaterLayer, hues: Sequence[tuple]) -> None:
+    def style(self, grains: Colouring | None, water: WaterLayer, hues: Sequence[tuple]) -> None:
         """Say what the colours show; hues: of the beds."""
         self._colouring, self._water = grains, water
         for k, bed in enumerate(self.beds):
@@ -93,7 +93,7 @@ class Stage:
                 self._paint_fixed(page, bed, camera)
 
     def _sea_box(self, k: int) -> Box:
-        """The pixels that sky and sea of bed k fill: of a single one all around the stage."""
+        """The pixels that sky and sea of bed k fill: of a single one all around the view."""
         if len(self.beds) == 1:
             return self.setting.canvas
         return self._cells.boxes[k]
@@ -160,7 +160,7 @@ class Stage:
             across, up, _ = camera.scale * self._drift[frame, k]
             still, thick = camera.shifted(across, -up), self._thick(bed.footage.sea.hull, camera)
             sea = bed.footage.sea_of(round(float(self._rows[k][frame])))
-            afloat = Afloat(sea, carried, still, self._time[frame], thick, self._unit)
+            afloat = FloatingShip(sea, carried, still, self._time[frame], thick, self._unit)
             afloat.paint(picture, self._sea_box(k), self._theme)
         self._paint_tank(picture, bed, carried)
         self._paint_fixed(picture, bed, carried)
@@ -173,7 +173,7 @@ class Stage:
             place = bed.position(row)
             place = place if part else self._on_ground(k, place, self._pose[frame, k])
             colour = self.overlay.under(self._colouring.colours(bed, row))
-            marks, *rest = self._colouring.dress(bed, colour)
+            marks, *rest = self._colouring.style(bed, colour)
             found[k] = to_discs(camera, place, bed.radius, bed.angle(row)), colour, (self.overlay.under(marks), *rest)
         for line in bed.plates(row):
             paint_plate(picture, camera, line, PLATE * self._unit, self._theme.part)

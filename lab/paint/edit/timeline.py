@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from lab.paint.film import Course
+from lab.paint.edit.event import find_event
+from lab.paint.film import Timeline
 from lab.paint.footage import Bed
-from lab.paint.reel.event import find_event
 
 RATE = 60.0  # pictures a second
 SLOWER = 5.0  # times slower than the rest of the film
@@ -17,8 +17,8 @@ HELD = 3.0  # s for which the last picture stays
 LONGEST = 36_000  # pictures
 
 
-def hero_course(bed: Bed, speed: float, rate: float = RATE) -> Course:
-    """The course of a bed's film at a playback speed: slow motion at its event, the verdict on the last still."""
+def hero_timeline(bed: Bed, speed: float, rate: float = RATE) -> Timeline:
+    """The timeline of a bed's film at a playback speed: slow motion at its event, the verdict on the last still."""
     first, last = float(bed.footage.time[0]), float(bed.footage.time[-1])
     event = find_event(bed)
     length = LASTS * speed / SLOWER
@@ -37,7 +37,7 @@ def hero_course(bed: Bed, speed: float, rate: float = RATE) -> Course:
     held = round(HELD * rate)
     times += [last] * (1 + held)
     notes += [""] * (1 + held)
-    return Course(np.array(times), notes, event.says if event else "", held)
+    return Timeline(np.array(times), notes, event.says if event else "", held)
 
 
 def _slowness(now: float, begin: float, end: float, ramp: float) -> float:

@@ -1,4 +1,4 @@
-"""The helm: turn the user's settings into a motion of the tank that is smooth even if they change abruptly.
+"""Steering: turn the user's settings into a motion of the tank that is smooth even if they change abruptly.
 
 Angles and amplitudes follow the settings like a critically damped oscillator; the tilt is also limited in rate. Pose,
 velocity and acceleration of the tank are continuous from piece to piece, by quintic Hermite interpolation.
@@ -62,7 +62,7 @@ class Oscillation:
         return np.array([a * s, a1 * s + a * w * c, (a2 - a * w * w) * s + (2.0 * a1 * w + a * w1) * c])
 
 
-class Helm:
+class Steering:
     """The settings of the tank's motion, by the names of `controls.CONTROLS`, and the motion that follows them."""
 
     def __init__(self, wanted: Mapping[str, float]) -> None:
@@ -74,7 +74,7 @@ class Helm:
 
     @staticmethod
     def motions() -> tuple[Steered, ...]:
-        """The motions of a scene that a helm steers."""
+        """The motions of a scene that the user steers."""
         return tuple(Steered(coordinate, fastest) for coordinate, fastest in FASTEST.items())
 
     def follow(self, time: float) -> list[np.ndarray]:

@@ -6,11 +6,11 @@ from PIL import Image
 
 from lab.base.errors import LabError
 from lab.paint.cargo.looks import Stowage, looks, of_density
+from lab.paint.edit.animation import write_animation
+from lab.paint.edit.event import find_event, telling_moments
+from lab.paint.edit.timeline import HELD, RATE, SLOWER, hero_timeline
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import on_the_way, open_footage
-from lab.paint.reel.animation import write_animation
-from lab.paint.reel.course import HELD, RATE, SLOWER, hero_course
-from lab.paint.reel.event import find_event, telling_moments
 from lab.paint.video import contact_sheet, render_recording, telling_time
 from lab.preset.sections.video import CARGOES
 from solvers.machine.runtime import initialise
@@ -49,24 +49,24 @@ def test_an_avalanche_is_found_where_the_bed_slides(slide):
 def test_the_pace_is_slow_about_the_event_and_even_elsewhere(slide):
     with open_footage(slide) as footage:
         (bed,) = choose_beds(footage)
-        course = hero_course(bed, 1.0)
-    paces = np.diff(course.time) * RATE
-    running = paces[: len(course.time) - 1 - course.held - 1]
+        timeline = hero_timeline(bed, 1.0)
+    paces = np.diff(timeline.time) * RATE
+    running = paces[: len(timeline.time) - 1 - timeline.held - 1]
     assert running.max() == pytest.approx(1.0) and running.min() == pytest.approx(1.0 / SLOWER)
     slow = running < 0.21
     assert slow.sum() / RATE == pytest.approx(3.0, abs=0.3)  # s of film
-    assert course.time[:-1][: len(running)][slow].min() < SLIDES < course.time[:-1][: len(running)][slow].max()
-    assert all(note.startswith("slow motion: 0.2") for note, late in zip(course.notes, slow, strict=False) if late)
-    assert course.notes[0] == course.notes[-1] == ""
-    assert course.held == round(HELD * RATE) and np.ptp(course.time[-course.held :]) == 0.0
-    assert course.time[-1] == pytest.approx(LASTS)
+    assert timeline.time[:-1][: len(running)][slow].min() < SLIDES < timeline.time[:-1][: len(running)][slow].max()
+    assert all(note.startswith("slow motion: 0.2") for note, late in zip(timeline.notes, slow, strict=False) if late)
+    assert timeline.notes[0] == timeline.notes[-1] == ""
+    assert timeline.held == round(HELD * RATE) and np.ptp(timeline.time[-timeline.held :]) == 0.0
+    assert timeline.time[-1] == pytest.approx(LASTS)
 
 
 def test_the_last_still_says_what_happened_and_earlier_pictures_do_not(slide):
     initialise()
     with open_footage(slide) as footage:
         beds = choose_beds(footage)
-        film = Film(beds, choose_look(footage, width=640, height=360), course=hero_course(beds[0], 1.0))
+        film = Film(beds, choose_look(footage, width=640, height=360), timeline=hero_timeline(beds[0], 1.0))
         film.picture(0)
         assert "band" not in film.written
         last = film.picture(len(film.time) - 1)
@@ -132,7 +132,7 @@ def test_animated_pictures_have_their_size_and_run_for_ever(slide, tmp_path, suf
 
 
 def test_a_film_that_is_too_long_for_an_animated_picture_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr("lab.paint.reel.animation.MOST", 2)
+    monkeypatch.setattr("lab.paint.edit.animation.MOST", 2)
     with pytest.raises(LabError, match="more than 2 pictures"):
         write_animation(tmp_path / "a.gif", [np.zeros((8, 8, 3), np.uint8)] * 3, 10.0)
 

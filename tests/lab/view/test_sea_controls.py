@@ -9,7 +9,7 @@ from lab.assembly.ship import make_water, make_waves
 from lab.paint.sea import Sea
 from lab.preset.find import load
 from lab.view.panel.controls import offered
-from lab.view.panel.swell import CALM, RandomSwell, RegularSwell, swell_of
+from lab.view.panel.sea_controls import CALM, RandomSea, RegularSea, sea_controls_of
 
 PIECE = 0.01  # s
 
@@ -19,16 +19,16 @@ def preset():
     return load("ship/barge-3dof").resolved
 
 
-def follow(swell: RegularSwell, seconds: float) -> np.ndarray:
+def follow(sea_controls: RegularSea, seconds: float) -> np.ndarray:
     """Amplitude, frequency and wave number (k, 3) piece by piece."""
     found = []
     for _ in range(round(seconds / PIECE)):
-        vessel = swell.follow(PIECE)
+        vessel = sea_controls.follow(PIECE)
         if vessel is not None:
             waves = vessel.ship.load.waves
-            assert waves.amplitude[0].real == pytest.approx(max(swell.now[0], 0.0))
-            assert waves.frequency[0] == swell.now[1]
-        found.append(swell.now)
+            assert waves.amplitude[0].real == pytest.approx(max(sea_controls.now[0], 0.0))
+            assert waves.frequency[0] == sea_controls.now[1]
+        found.append(sea_controls.now)
     return np.array(found)
 
 
@@ -38,13 +38,13 @@ def test_a_ship_offers_her_waves_and_no_motion_of_the_tank(preset):
 
 
 def test_without_settings_the_waves_stay_unchanged(preset):
-    assert RegularSwell(preset).follow(PIECE) is None
+    assert RegularSea(preset).follow(PIECE) is None
 
 
 def test_waves_grow_smoothly_to_the_setting(preset):
-    swell = RegularSwell(preset)
-    swell.wanted["wave_amplitude"] = 0.035
-    height = follow(swell, 8.0)[:, 0]
+    sea_controls = RegularSea(preset)
+    sea_controls.wanted["wave_amplitude"] = 0.035
+    height = follow(sea_controls, 8.0)[:, 0]
     assert height[0] == pytest.approx(preset.waves.amplitude, abs=1e-4)
     assert np.abs(np.diff(height)).max() < 1e-3
     assert np.all(np.diff(height) >= -1e-12)
@@ -52,9 +52,9 @@ def test_waves_grow_smoothly_to_the_setting(preset):
 
 
 def test_a_new_frequency_acts_after_the_old_waves_have_decayed(preset):
-    swell = RegularSwell(preset)
-    swell.wanted["wave_frequency"] = 6.0
-    height, frequency, number = follow(swell, 14.0).T
+    sea_controls = RegularSea(preset)
+    sea_controls.wanted["wave_frequency"] = 6.0
+    height, frequency, number = follow(sea_controls, 14.0).T
     change = int(np.flatnonzero(np.diff(frequency))[0])
     assert height[change] < 1.1 * CALM
     assert (frequency[0], frequency[-1]) == (preset.waves.frequency, 6.0)
@@ -70,14 +70,14 @@ def at_sea():
 def test_a_random_sea_offers_its_height_and_calm_water_nothing(at_sea):
     waves = {name for name in offered(at_sea) if name.startswith("wave_")}
     assert waves == {"wave_height"}
-    assert swell_of(replace(at_sea, waves=None)) is None
+    assert sea_controls_of(replace(at_sea, waves=None)) is None
 
 
 def test_all_components_of_a_random_sea_grow_smoothly_in_proportion(at_sea):
-    swell, given = RandomSwell(at_sea), make_waves(at_sea.waves, make_water(at_sea.sea, 9.81))
-    assert swell.follow(PIECE) is None
-    swell.wanted["wave_height"] = 2.0 * at_sea.waves.height
-    found = [swell.follow(PIECE) for _ in range(round(12.0 / PIECE))]
+    sea_controls, given = RandomSea(at_sea), make_waves(at_sea.waves, make_water(at_sea.sea, 9.81))
+    assert sea_controls.follow(PIECE) is None
+    sea_controls.wanted["wave_height"] = 2.0 * at_sea.waves.height
+    found = [sea_controls.follow(PIECE) for _ in range(round(12.0 / PIECE))]
     assert found[-1] is None
     seas = [vessel.ship.load.waves for vessel in found if vessel]
     grown = np.array([np.abs(sea.amplitude).sum() for sea in seas]) / np.abs(given.amplitude).sum()
@@ -90,9 +90,9 @@ def test_all_components_of_a_random_sea_grow_smoothly_in_proportion(at_sea):
 @pytest.mark.parametrize(("name", "wanted"), [("at_sea", "wave_height"), ("preset", "wave_amplitude")])
 def test_the_sea_that_is_painted_is_the_one_that_the_ship_meets(name, wanted, request):
     given = request.getfixturevalue(name)
-    swell = swell_of(given)
-    swell.wanted[wanted] *= 0.5
-    vessel = [swell.follow(PIECE) for _ in range(20)][-1]
+    sea_controls = sea_controls_of(given)
+    sea_controls.wanted[wanted] *= 0.5
+    vessel = [sea_controls.follow(PIECE) for _ in range(20)][-1]
     painted, place = Sea(given), np.linspace(-1.0, 1.0, 7)
-    painted.waves = swell.now
+    painted.waves = sea_controls.now
     assert painted.elevation(place, 9.0) == pytest.approx(vessel.ship.load.waves.elevation(place, np.full(7, 9.0)))

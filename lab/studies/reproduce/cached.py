@@ -18,7 +18,7 @@ from lab.studies.reproduce.runs import Batch
 
 
 @dataclass(frozen=True)
-class Finding:
+class CachedResult:
     """An experiment as the page tells it.
 
     `asked` is a hash of its runs (see `asked`); `stopped` names runs that did not reach their end, and why; `figure`
@@ -41,16 +41,16 @@ class Finding:
 WORDS = ("format", "title", "source", "reports", "based_on", "quick", "video")
 # Tables by what a hash calls them: the sea was named water before presets had a format, and results are kept from then.
 CALLED = {"sea": "water", "water": "water in the tank"}
-FINDINGS = TypeAdapter(dict[str, Finding])
+CACHED = TypeAdapter(dict[str, CachedResult])
 
 
-def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool) -> dict[str, Finding]:
+def read_cached(path: Path, experiments: Mapping[str, Experiment], quick: bool) -> dict[str, CachedResult]:
     """Read the findings of these experiments, except those whose runs have changed since. Raises LabError.
 
     One whose measured series is not here is kept: its runs can be neither compared nor made again.
     """
     try:
-        found = FINDINGS.validate_json(path.read_bytes())
+        found = CACHED.validate_json(path.read_bytes())
     except FileNotFoundError:
         return {}
     except (OSError, ValidationError) as error:
@@ -62,11 +62,11 @@ def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool
     }
 
 
-def _still_asked(one: Experiment, finding: Finding, quick: bool) -> bool:
+def _still_asked(one: Experiment, finding: CachedResult, quick: bool) -> bool:
     return (bool(one.needs) and not data_file(one.needs)) or finding.asked == asked(one.batches(quick))
 
 
-def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:
+def write_cached(path: Path, findings: Mapping[str, CachedResult]) -> None:
     """Write the findings, atomically."""
     write(path, {name: asdict(finding) for name, finding in findings.items()})
 

@@ -5,7 +5,7 @@ from collections import deque
 from multiprocessing.connection import Connection
 
 
-class Outbox:
+class SendQueue:
     """A queue of messages, pairs of a word and its data, sent in order; some replace older ones of the same word.
 
     `finish` waits until all are sent. Raises BrokenPipeError once the window is gone.

@@ -11,12 +11,12 @@ from lab.paint.footage import Bed
 from lab.paint.page.layout import Box, Layout
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera, paint_strokes
-from lab.paint.scenery.stage import Stage
+from lab.paint.scene.view import SceneView
 
 SHARE = 0.3  # of the tank's width that is shown
 OUTSIDE = 0.08  # of the part's size that may lie outside the tank
 TALL = 0.75  # of the inset's height: a long low tank is shown as large
-LARGER = 1.6  # times the stage's scale at least
+LARGER = 1.6  # times the view's scale at least
 HALF = 0.08  # half thickness in u of the frames around the part and its picture
 
 
@@ -24,14 +24,14 @@ HALF = 0.08  # half thickness in u of the frames around the part and its picture
 class Inset:
     """A part of the first bed: its middle (2,) m in the tank's axes, the box of its picture, pixels a metre, a unit."""
 
-    stage: Stage
+    view: SceneView
     middle: np.ndarray
     box: Box
     scale: float
     unit: float
 
     @classmethod
-    def of(cls, stage: Stage, bed: Bed, what: str, layout: Layout) -> Inset | None:
+    def of(cls, view: SceneView, bed: Bed, what: str, layout: Layout) -> Inset | None:
         """The inset of this kind, None if there is none to show."""
         if what == "none" or "inset" not in layout.boxes:
             return None
@@ -42,20 +42,20 @@ class Inset:
         box = layout["inset"]
         wide, high = np.ptp(bed.footage.outline, axis=0)
         width = float(min(SHARE * wide, high / TALL * (box[2] - box[0]) / (box[3] - box[1])))
-        scale = max((box[2] - box[0]) / width, LARGER * stage.cameras[0].scale)
+        scale = max((box[2] - box[0]) / width, LARGER * view.cameras[0].scale)
         size = np.array([box[2] - box[0], box[3] - box[1]]) / scale
-        return cls(stage, _moved_inside(middle, size, bed.footage.outline), box, scale, layout.unit)
+        return cls(view, _moved_inside(middle, size, bed.footage.outline), box, scale, layout.unit)
 
     def paint(self, picture: np.ndarray, frame: int, theme: Theme) -> None:
         """Paint the part into its box, and its frame onto the tank, in place."""
         left, top, right, bottom = self.box
         size = np.array([right - left, bottom - top])
-        moved = self.stage.tank_camera(0, frame)
+        moved = self.view.tank_camera(0, frame)
         turned = Camera(self.scale, (0.0, 0.0), moved.turn)
         offset = 0.5 * size - turned.pixels(self.middle[None])[0]
         part = np.empty((size[1], size[0], 3), dtype=np.uint8)
         part[:] = theme.paper
-        self.stage.paint_part(part, 0, frame, Camera(self.scale, tuple(offset), moved.turn))
+        self.view.paint_part(part, 0, frame, Camera(self.scale, tuple(offset), moved.turn))
         picture[top:bottom, left:right] = part
         half, at = HALF * self.unit, moved.pixels(self.middle[None])[0]
         reach = 0.5 * size * moved.scale / self.scale

@@ -7,12 +7,12 @@ import numpy as np
 from lab.paint.page.layout import Box
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera
-from lab.paint.scenery.ship import silhouette
+from lab.paint.scene.ship import silhouette
 from lab.paint.sea import LINE, Sea
 
 
 @dataclass(frozen=True)
-class Afloat:
+class FloatingShip:
     """A ship at one time (s): her camera, that of the still water, plates `thick` pixels thick, pixels a unit."""
 
     sea: Sea

@@ -6,7 +6,7 @@ import numpy as np
 
 from lab.assembly.ship import make_vessel
 from lab.preset.schema import Preset
-from lab.view.panel.helm import Follower
+from lab.view.panel.steering import Follower
 from solvers.ship.vessel import Vessel
 
 EASE = 0.5  # s
@@ -15,7 +15,7 @@ STEADY = 1e-7  # m and m/s: within this distance the goal counts as reached
 RANDOM = "jonswap", "pierson-moskowitz", "white-noise"
 
 
-class RegularSwell:
+class RegularSea:
     """Regular waves; a new frequency takes effect only once they have died away.
 
     `wanted`: the user's amplitude (m) and frequency (rad/s).
@@ -47,7 +47,7 @@ class RegularSwell:
         return _raised(self._vessel, self._height)
 
 
-class RandomSwell:
+class RandomSea:
     """A random sea; `wanted` is the user's significant height (m), to which all components are proportional."""
 
     def __init__(self, preset: Preset) -> None:
@@ -68,10 +68,10 @@ class RandomSwell:
         return _raised(self._vessel, self._height)
 
 
-def swell_of(preset: Preset) -> RegularSwell | RandomSwell | None:
+def sea_controls_of(preset: Preset) -> RegularSea | RandomSea | None:
     """The steerable waves of a preset, None if it has none."""
     kind = preset.waves.kind if preset.ship and preset.waves else ""
-    return RegularSwell(preset) if kind == "regular" else RandomSwell(preset) if kind in RANDOM else None
+    return RegularSea(preset) if kind == "regular" else RandomSea(preset) if kind in RANDOM else None
 
 
 def _afloat(preset: Preset, **changes: float) -> Vessel:

@@ -17,7 +17,7 @@ class Room:
     """What a cell has around its bed, in pixels: `around` on all sides, `above` it a name, `below` it a band.
 
     beside: as wide as the names are, if they may also stand to the left of the beds, where that shows these larger.
-    filled: cells share the whole stage, as those of ships do, whose sea goes on to their edges.
+    filled: cells share the whole view, as those of ships do, whose sea goes on to their edges.
     """
 
     around: float
@@ -45,7 +45,7 @@ class Cells:
 def lay_cells(grounds: Sequence[tuple[np.ndarray, np.ndarray]], box: Box, unit: float, room: Room) -> Cells:
     """Cells for beds within these corners (lower, upper) m, in a box of pixels, all to one scale."""
     left, top, right, bottom = box
-    stage, gap, count = np.array([right - left, bottom - top]), GAP * unit, len(grounds)
+    view, gap, count = np.array([right - left, bottom - top]), GAP * unit, len(grounds)
     extent = np.max([high - low for low, high in grounds], axis=0)
 
     def grid(columns: int) -> np.ndarray:
@@ -56,15 +56,15 @@ def lay_cells(grounds: Sequence[tuple[np.ndarray, np.ndarray]], box: Box, unit: 
 
     def scale(shape: tuple[int, tuple[float, float]]) -> float:
         columns, way = shape
-        cell = (stage - gap * (grid(columns) - 1)) / grid(columns)
+        cell = (view - gap * (grid(columns) - 1)) / grid(columns)
         return float(((cell - taken(way)) / extent).min())
 
     shapes = [(columns, way) for way in room.ways for columns in range(1, count + 1)]
     columns, way = max(shapes, key=scale)
     largest, around, (left_of, above) = scale((columns, way)), taken(way), way
     least = largest * extent + around + gap
-    pitch = (stage + gap) / grid(columns) if room.filled else least
-    start = np.array([left, top]) + (stage - pitch * grid(columns) + gap) / 2
+    pitch = (view + gap) / grid(columns) if room.filled else least
+    start = np.array([left, top]) + (view - pitch * grid(columns) + gap) / 2
     corners = [start + pitch * (k % columns, k // columns) for k in range(count)]
     spread = 0.5 * (pitch - least)
     cameras = []
