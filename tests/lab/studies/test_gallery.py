@@ -10,7 +10,7 @@ from lab.base.errors import LabError
 from lab.preset.find import names
 from lab.studies import gallery
 from lab.studies.gallery import make_gallery, repeats_of_twin
-from lab.studies.reproduce import findings
+from lab.studies.reproduce import cached
 
 
 @pytest.mark.parametrize("clip", ["tilting-quick.mp4", None])
@@ -93,9 +93,9 @@ def test_a_card_of_another_preset_or_of_other_beds_is_made_anew(tmp_path, monkey
     assert made == []
     with pytest.raises(LabError, match="enough"):
         make_gallery(["tilting/quick"], tmp_path, quiet=True, beds=3)
-    load = findings.load
+    load = cached.load
     changed = {"material.friction": 0.1}
-    monkeypatch.setattr(findings, "load", lambda name, changes: load(name, {**changes, **changed}))
+    monkeypatch.setattr(cached, "load", lambda name, changes: load(name, {**changes, **changed}))
     with pytest.raises(LabError, match="enough"):
         make_gallery(["tilting/quick"], tmp_path, quiet=True, beds=2)
     assert [batch.changes["run.repeats"] for batch in made] == [3, 2]

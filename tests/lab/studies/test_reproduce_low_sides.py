@@ -13,7 +13,7 @@ from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import low_sides
 from lab.studies.reproduce.ships.capsizes import swung
-from lab.studies.reproduce.ships.low_sides import low_ship, tell, tell_map, tell_tank
+from lab.studies.reproduce.ships.low_sides import low_ship, report, report_map, report_tank
 from lab.studies.reproduce.ships.rolls import AMPLITUDE, FREQUENCY
 
 BREADTH, DRAUGHT, SIDE, HATCH = 0.34, 0.11, 0.03, 0.06  # m, SIDE above the water, half of the hatch
@@ -74,7 +74,7 @@ def test_beds_are_counted(monkeypatch):
         return Outcome({AMPLITUDE: size}, None, "complete", measures(capsized, flooded, np.nan), {})
 
     never = [np.nan, np.nan]
-    told = tell({"low sides": [run("19 mm", never, never), run("30 mm", [np.nan, 9.0], [12.0, np.nan])]})
+    told = report({"low sides": [run("19 mm", never, never), run("30 mm", [np.nan, 9.0], [12.0, np.nan])]})
     assert told.rows[0].ours.startswith("stands with 2 beds; lost with 0 %")
     assert told.rows[1].ours.startswith("floods at 12 s (1 of 2 beds), capsizes at 9 s (1 of 2 beds)")
     assert told.rows[1].ours.endswith("frozen stands")
@@ -93,7 +93,7 @@ def test_the_map_has_the_lowest_capsizing_waves_with_loose_and_frozen_cargo(monk
         run(15, 4.0, [np.nan, np.nan], np.nan),
         run(25, 4.0, [np.nan, np.nan], np.nan),
     ]
-    told = tell_map({"low sides": runs})
+    told = report_map({"low sides": runs})
     assert [row.ours for row in told.rows] == [
         "in none of these waves",
         "from 15 mm on",
@@ -124,7 +124,7 @@ def test_what_the_watch_stopped_is_neither_lost_nor_survived():
         return Outcome({AMPLITUDE: f"{size} mm", FREQUENCY: "4.4 rad/s"}, None, status, found, {})
 
     runs = [run(15, "complete", np.nan), run(25, "stopped: too fast", np.nan), run(35, "complete", 5.0)]
-    told = tell_tank({"anti-roll tank": runs})
+    told = report_tank({"anti-roll tank": runs})
     assert [row.ours for row in told.rows] == ["from 35 mm on; not known at 25 mm"]
     points = [line for line in told.figure.axes[0].lines if len(line.get_xdata())]
     assert [point.get_fillstyle() for point in points] == ["none", "left", "full"]
