@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from solvers.machine import compiling
 
-PARTS = ("import", "compile", "settle", "run", "plots", "video")
+PARTS = ("import", "compile", "settle", "run", "measures", "plots", "video")
 
 _importing = 0.0  # s spent on imports that no run has counted yet
 
@@ -25,8 +25,8 @@ def importing() -> Iterator[None]:
 class Costs:
     """Seconds of a run by PARTS, from now on; imports come from before.
 
-    `settle` is the scene and its bed, `plots` the measures and figures. Kernels are compiled when they are first
-    needed, within other parts: that time is `compile` and not theirs.
+    `settle` is the scene and its bed. A video that is painted beside measures and plots counts for what it takes longer.
+    Kernels are compiled when they are first needed, within other parts: that time is `compile` and not theirs.
     """
 
     def __init__(self) -> None:

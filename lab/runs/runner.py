@@ -128,9 +128,10 @@ def report(
         if video and beside:
             beside.begin(folder)
         files = {"recording": recording.path}
-        with progress.costs.of("plots"):
+        with progress.costs.of("measures"):
             measures = measure_all(recording)
-            if plots:
+        if plots:
+            with progress.costs.of("plots"):
                 from lab.report.plots import write_plots  # Matplotlib is slow to import
 
                 files |= write_plots(recording, measures, folder)

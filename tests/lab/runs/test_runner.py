@@ -7,6 +7,7 @@ import pytest
 
 import lab
 from lab.assembly.scene import build
+from lab.base.costs import PARTS
 from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.recording import open_recording
@@ -46,7 +47,7 @@ def test_the_summary_says_what_the_time_went_into(result):
     """Compiling happens within settling and running, but is told on its own; the recording times the run by itself."""
     data = json.loads((result.folder / "summary.json").read_text())
     seconds = data["cost"]["seconds"]
-    parts = [seconds[part] for part in ("import", "compile", "settle", "run", "plots", "video")]
+    parts = [seconds[part] for part in PARTS]
     assert all(part >= 0.0 for part in parts) and seconds["rest"] >= 0.0
     assert sum(parts) + seconds["rest"] == pytest.approx(seconds["whole"], abs=0.01)
     assert seconds["compile"] > 0.0 and data["cost"]["wall_s"] <= seconds["run"] + seconds["compile"]
