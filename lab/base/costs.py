@@ -25,7 +25,7 @@ def importing() -> Iterator[None]:
 class Costs:
     """Seconds of a run by PARTS, from now on; imports come from before.
 
-    `settle` is the scene and its bed. A video that is painted beside measures and plots counts for what it takes longer.
+    `settle` is the scene and its bed. A video, painted beside measures and plots, counts as far as it takes longer.
     Kernels are compiled when they are first needed, within other parts: that time is `compile` and not theirs.
     """
 

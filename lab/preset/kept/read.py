@@ -1,10 +1,12 @@
 """Read `keys.json`: dataclasses with the names, types and marks of the schema's, of which nothing else is there."""
 
 import json
+import re
 import sys
 from collections.abc import Mapping
 from dataclasses import field, make_dataclass
 from functools import cache
+from hashlib import blake2b
 from pathlib import Path
 from typing import Annotated, Any, Literal, Optional, Union
 
@@ -13,8 +15,9 @@ from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
 
 FILE = Path(__file__).with_name("keys.json")
 ROOT = Path(__file__).parents[3]
-SOURCES = "lab/preset", "solvers"  # what the schema follows from
-MOMENT = 60.0  # s within which a copy of the lab gets all its files
+SEEN = FILE.with_name("sources.txt")  # the hash of the sources that the file was written from
+OWN = "lab/preset/schema.py", "lab/preset/sections"  # what has the keys, and imports those of the solvers
+IMPORTED = re.compile(r"^from (solvers[\w.]*) import (?:\(([^)]*)\)|([\w ,]+))", re.MULTILINE)
 LOOKED_AT = 1000  # rows of a file, which is read whole by the schema afterwards
 PLAIN = {"number": float, "whole": int, "truth": bool, "text": str, "file": Table}
 
@@ -22,7 +25,7 @@ PLAIN = {"number": float, "whole": int, "truth": bool, "text": str, "file": Tabl
 def keys() -> type:
     """The schema's dataclass if it is loaded, else one with the same keys that takes a hundredth of the time.
 
-    Where the code is newer than the file, as while a key is being added to it, the schema is loaded.
+    Where the code is another than the file is of, as while a key is being added to it, the schema is loaded.
     """
     if not loaded() and not is_current():
         from lab.preset.schema import Preset  # noqa: F401
@@ -36,9 +39,32 @@ def loaded() -> type | None:
 
 @cache
 def is_current() -> bool:
-    """Whether no source of the schema is newer than the file."""
-    written = FILE.stat().st_mtime + MOMENT
-    return all(path.stat().st_mtime <= written for one in SOURCES for path in (ROOT / one).rglob("*.py"))
+    """Whether the file was written from the sources as they are."""
+    return SEEN.read_text(encoding="ascii").strip() == hash_of_sources()
+
+
+def hash_of_sources() -> str:
+    """A hash of the files that the schema takes its keys from: its own, and what these import of the solvers."""
+    own = sorted(path for one in OWN for path in ([ROOT / one] if one.endswith(".py") else (ROOT / one).rglob("*.py")))
+    texts = {path: path.read_bytes() for path in own}
+    names = {
+        f"{module}.{name.split()[0]}"
+        for text in list(texts.values())
+        for module, *listed in IMPORTED.findall(text.decode())
+        for name in filter(None, map(str.strip, "".join(listed).split(",")))
+    }
+    digest = blake2b(digest_size=16)
+    for path in [*own, *sorted({found for name in names for found in _files(name)})]:
+        digest.update(texts.get(path) or path.read_bytes())
+    return digest.hexdigest()
+
+
+def _files(name: str) -> list[Path]:
+    """The files of a module, or of the module that has a name, and a table of data beside it."""
+    whole, module = (ROOT / one.replace(".", "/") for one in (name, name.rpartition(".")[0]))
+    at = whole if whole.with_suffix(".py").exists() or whole.is_dir() else module
+    places = at.with_suffix(".py"), at / "__init__.py", at.with_suffix(".toml")
+    return [path for path in places if path.exists()]
 
 
 @cache

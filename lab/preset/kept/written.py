@@ -5,7 +5,7 @@ from dataclasses import fields
 from typing import get_args, get_origin
 
 from lab.preset.fields import Taken, defaults_of, taken_of
-from lab.preset.kept.read import FILE, PLAIN
+from lab.preset.kept.read import FILE, PLAIN, SEEN, hash_of_sources
 from lab.preset.schema import Preset
 
 NAMES = {kind: name for name, kind in PLAIN.items()}
@@ -17,8 +17,9 @@ def text_of_keys(preset: type = Preset) -> str:
 
 
 def write_keys() -> None:
-    """Write the file."""
+    """Write the file, and the hash of the sources that it is of."""
     FILE.write_text(text_of_keys(), encoding="utf-8")
+    SEEN.write_text(f"{hash_of_sources()}\n", encoding="ascii")
 
 
 def _table(kind: type) -> dict:
