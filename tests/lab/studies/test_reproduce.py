@@ -341,12 +341,12 @@ def test_a_claim_in_a_file_is_run_and_judged_by_its_number_and_tolerance():
         ]
         for run, beds in slides.items()
     }
-    rows = {row.quantity: row for row in trial.tell(found).rows}
+    rows = {row.quantity: row for row in trial.report(found).rows}
     assert [rows[name].verdict for name in ("A slides", "B slides", "later")] == ["agrees", "differs", "agrees"]
     assert [rows[name].kind for name in ("A slides", "B slides", "later")] == ["measured", "measured", "sign"]
     assert rows["B slides"].source == "30 deg" and rows["B slides"].tolerance == "2 deg: by eye"
-    assert [row.quantity for row in trial.tell({"A": found["A"]}).rows] == ["A slides"]  # a report may lack B
-    unjudged = read(CLAIMS.replace('within = "bed"', 'within = "bed"\njudged = false'))["trial"].tell(found).rows[1]
+    assert [row.quantity for row in trial.report({"A": found["A"]}).rows] == ["A slides"]  # a report may lack B
+    unjudged = read(CLAIMS.replace('within = "bed"', 'within = "bed"\njudged = false'))["trial"].report(found).rows[1]
     assert unjudged.verdict is None and unjudged.apart == rows["B slides"].apart != "" and unjudged.kind is None
 
 
@@ -417,7 +417,7 @@ def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
         return one
 
     nodes = [ran(0.95, **{"contact.nodes": 36}), ran(0.98, **{"contact.nodes": 120})]
-    told = EXPERIMENTS["outline-discs"].tell({"discs": [ran(1.0)], "smooth": [ran(1.0)], "nodes": nodes})
+    told = EXPERIMENTS["outline-discs"].report({"discs": [ran(1.0)], "smooth": [ran(1.0)], "nodes": nodes})
     discs, *ratios = told.rows[:4]
     assert (discs.ours, discs.verdict) == ("1.25 ± 0.27 mm (6 beds)", None)
     assert [row.ours.partition(" ±")[0] for row in ratios] == ["1", "0.9500", "0.9800"]
@@ -437,7 +437,7 @@ def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
 def test_heaps_are_judged_within_their_scatter(heaps, verdict):
     discs, outlined = (over_worlds(angles, "deg") for angles in ((19.1, 19.4, 18.2, 20.1), heaps))
     found = {"discs": [outcome(heap_angle=discs)], "outlines": [outcome(heap_angle=outlined)]}
-    assert EXPERIMENTS["outline-heaps"].tell(found).rows[-1].verdict is verdict
+    assert EXPERIMENTS["outline-heaps"].report(found).rows[-1].verdict is verdict
 
 
 def test_a_verdict_can_be_kept():

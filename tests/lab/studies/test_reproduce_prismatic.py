@@ -95,7 +95,7 @@ def test_what_air_adds_is_told_cycle_by_cycle():
     for more, verdict in ((100.0, Verdict.AGREES), (-100.0, Verdict.DIFFERS)):
         both = hit(of, 1.34, 1015.0, list(hits + more), {"air.sound_speed": "equal"})
         assert prismatic.cycle_peaks(both, 1).worlds == pytest.approx([1015.0 - 1000.0 * 9.81 * 0.0525] * 9)
-        told = experiments("water")["prismatic-half-air-finest"].tell({"one phase, 25 m/s": water, "with air": both})
+        told = experiments("water")["prismatic-half-air-finest"].report({"one phase, 25 m/s": water, "with air": both})
         (row,) = (row for row in told.rows if "peak at P2" in row.quantity)
         assert row.ours.startswith(f"{more:g} ± 0") and row.verdict is verdict
 
@@ -111,7 +111,7 @@ def test_the_time_with_water_at_a_gauge_is_told_of_each_cycle():
 
 
 def test_pages_tell_peaks_in_the_upper_chamber():
-    told = experiments("water")["prismatic-half"].tell(
+    told = experiments("water")["prismatic-half"].report(
         {"50 %, roll": hit("sloshing/source-p-50-roll", 1.34, 1015.0, [90.0] * 9)}
     )
     cells = dict(zip(*told.table, strict=True))
@@ -124,7 +124,7 @@ def test_of_a_run_that_was_stopped_its_cost_alone_is_told():
     (one,) = hit("sloshing/source-p-50-roll", 1.34, 1015.0, [90.0] * 9)
     ended = dataclasses.replace(one, status="stopped: world 0: the water is too fast at t = 9 s.")
     ended.__dict__["recording"] = one.recording
-    told = experiments("water")["prismatic-half"].tell({"50 %, roll": [ended]})
+    told = experiments("water")["prismatic-half"].report({"50 %, roll": [ended]})
     cells = dict(zip(*told.table, strict=True))
     assert cells["particles"] == "100" and cells["mean peak at P2"] == cells["highest water"] == "stopped"
 
@@ -136,7 +136,7 @@ def test_chamfers_are_told_beside_those_of_50_mm():
     for size, high in hits.items():
         batch = known[label := f"50 %, roll, {size}"]
         found[label] = hit(batch.preset, 1.34, 1015.0, [high] * 9, dict(batch.changes))
-    told = experiments("water")["prismatic-chamfer-half"].tell(found)
+    told = experiments("water")["prismatic-chamfer-half"].report(found)
     assert [row.ours for row in told.rows] == [
         "+0 ± 0 Pa (s.e.); -100 ± 0 Pa (s.e.); dry",
         "+0 ± 0 Pa (s.e.); dry for 190 Pa; dry",
@@ -159,7 +159,7 @@ def test_gauges_lie_on_the_walls_of_tanks_with_other_chamfers():
 @pytest.mark.parametrize(("highest", "verdict"), [(207.0, Verdict.AGREES), (208.0, Verdict.DIFFERS)])
 def test_water_within_a_spacing_of_the_roof_touches_it(highest, verdict):
     found = {"25 %, roll": swayed(2.4, 0.0, highest, "sloshing/source-p-25-roll")}
-    told = experiments("water")["prismatic-roof"].tell(found)
+    told = experiments("water")["prismatic-roof"].report(found)
     assert [row.verdict for row in told.rows] == [verdict]
     assert dict(zip(*told.table, strict=True))["highest water"] == f"{highest:.0f} mm"
 

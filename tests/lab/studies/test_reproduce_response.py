@@ -32,7 +32,7 @@ def made(stretched: float = 1.0, more: float = 0.0, spacing: str = "6.25 mm") ->
 
 def verdicts(runs: list) -> dict[str, Verdict]:
     """Those of the experiment on these runs, by the first words of what they are on."""
-    told = experiments("water")["sway-sweep"].tell({"16 layers": runs})
+    told = experiments("water")["sway-sweep"].report({"16 layers": runs})
     assert told.figure is not None and len(told.table) == 1 + len(FREQUENCIES)
     assert len({len(row) for row in told.table}) == 1
     return {" ".join(row.quantity.split()[:2]).rstrip(","): row.verdict for row in told.rows}
@@ -72,5 +72,5 @@ def test_a_peak_off_by_two_per_cent_and_damping_too_much_differ():
 
 def test_only_the_finest_run_is_judged():
     found = {"8 layers": made(stretched=1.02, spacing="12.5 mm"), "16 layers": made()}
-    judged = [row.verdict for row in experiments("water")["sway-sweep"].tell(found).rows]
+    judged = [row.verdict for row in experiments("water")["sway-sweep"].report(found).rows]
     assert judged == [None] * 4 + [Verdict.AGREES] * 4

@@ -16,7 +16,7 @@ def run(**angles):
 def told(upturns, slides, others):
     low = run(spill_upturn_angle=upturns, critical_angle=slides)
     found = {"smooth tank, low walls": low, "smooth tank, high walls": run(critical_angle=others)}
-    return experiments("granular")["tilt-rim"].tell(found).rows
+    return experiments("granular")["tilt-rim"].report(found).rows
 
 
 def test_the_lead_has_the_error_of_both_means():

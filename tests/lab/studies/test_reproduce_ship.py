@@ -11,7 +11,7 @@ from lab.studies.reproduce.ships.rolls import AMPLITUDE, FREQUENCY, rolls_figure
 
 STAYS = np.nan
 response_tell, capsize_tell, freedom_tell = (
-    experiments("ship")[name].tell for name in ("barge-roll", "barge-capsize", "barge-3dof")
+    experiments("ship")[name].report for name in ("barge-roll", "barge-capsize", "barge-3dof")
 )
 
 

@@ -37,7 +37,7 @@ def ran(preset: str, changes: dict | None = None, **series: np.ndarray) -> Outco
 
 def judged(name: str, label: str, one: Outcome) -> dict[str, Verdict]:
     """The verdicts on the rows of an experiment whose only run this is; its figure is drawn and its table made."""
-    told = experiments("water")[name].tell({label: [one]})
+    told = experiments("water")[name].report({label: [one]})
     assert told.figure is not None and len(told.table) == 2 and len(told.table[0]) == len(told.table[1])
     return {row.quantity.removesuffix(f", {label}"): row.verdict for row in told.rows}
 
@@ -116,7 +116,9 @@ def test_the_scatter_of_repeated_impacts_is_that_of_their_peaks():
         return ran("sloshing/impact", time=time, gauge_pressure=shown, gauge_peak=shown)
 
     of = {"few": (3e3, 4e3, 5e3), "none": (4e3, 4e3, 4e3), "many": (3.2e3, 4.8e3) * 10, "dry": (0.0, 0.0)}
-    told = experiments("water")["impact-air"].tell({label: [hit(one) for one in peaks] for label, peaks in of.items()})
+    told = experiments("water")["impact-air"].report(
+        {label: [hit(one) for one in peaks] for label, peaks in of.items()}
+    )
     assert [row.verdict for row in told.rows] == [Verdict.CANNOT_TELL, Verdict.DIFFERS, Verdict.AGREES]
     assert told.rows[0].ours == "0.25 (0.13 to 1.57) of 3 runs" and told.table[1][-3] == "4.0 ± 1.0"
     assert told.table[4][5:] == ["0 of 2", "", "", "", ""]
@@ -147,7 +149,7 @@ def test_impacts_of_several_starts_are_judged_by_their_mean_and_its_interval():
         return ran("sloshing/impact", time=time, gauge_pressure=shown, gauge_peak=shown)
 
     for impulses, verdict in (((170.0, 180.0) * 8, Verdict.AGREES), ((100.0, 300.0), Verdict.CANNOT_TELL)):
-        told = experiments("water")["roll-impact"].tell({"starts": [hit(one) for one in impulses]})
+        told = experiments("water")["roll-impact"].report({"starts": [hit(one) for one in impulses]})
         row = next(row for row in told.rows if row.quantity == "first impact impulse, starts")
         assert row.verdict is verdict and row.ours.endswith(f"Pa s ({len(impulses)} beds)")
         cell = told.table[1][told.table[0].index("first impulse")]
@@ -160,7 +162,7 @@ def test_only_the_last_run_is_judged_and_all_are_in_the_table():
     still = ran(
         "sloshing/impact", time=time, gauge_pressure=np.zeros((len(time), 1, 1)), gauge_peak=np.zeros((len(time), 1, 1))
     )
-    told = experiments("water")["roll-impact"].tell({"a": [still], "b": [still]})
+    told = experiments("water")["roll-impact"].report({"a": [still], "b": [still]})
     assert {row.quantity.rsplit(", ", 1)[1] for row in told.rows} == {"b"}
     assert {row.verdict for row in told.rows} == {Verdict.CANNOT_TELL}
     assert [row[0] for row in told.table] == ["run", "a", "b"] and told.table[1][5:] == ["none"] * 8
@@ -205,7 +207,7 @@ def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
     places = np.full((110, 1, 2, 2), -0.21)
     frames = {"frames_time": np.arange(0.0, 0.55, 0.005), "frames_water_position": places}
     one = ran("validation/dam-break", time=time, gauge_pressure=still, gauge_peak=still, **frames)
-    rows = experiments("water")["dam-break"].tell({"30 layers": [one]}).rows
+    rows = experiments("water")["dam-break"].report({"30 layers": [one]}).rows
     assert {(row.ours, row.verdict) for row in rows} == {("not found", Verdict.CANNOT_TELL)}
 
 
@@ -316,7 +318,7 @@ def test_the_quick_run_is_judged_as_the_report_says(name, tmp_path):
     one = experiments("water")[name]
     ((label, batch),) = one.batches(True).items()
     carry_out(batch, tmp_path / "run", quiet=True)
-    verdicts = {row.quantity: row.verdict for row in one.tell({label: outcomes(tmp_path / "run")}).rows}
+    verdicts = {row.quantity: row.verdict for row in one.report({label: outcomes(tmp_path / "run")}).rows}
     for says in SOUND[name]:
         assert verdicts[f"{says}, {label}"] is Verdict.AGREES, (says, verdicts)
 
