@@ -32,7 +32,7 @@ class Level:
 
 WAVES = "frequencies to {} %, waves at a Reynolds number of 500 damped {} % too much, pressure at rest to {} % of ρgH"
 LEVELS = {
-    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "beds may run out 3 % faster", 20, WAVES.format(1, 12, 0.8)),
+    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "beds may run out some 5 % faster", 20, WAVES.format(1, 12, 0.8)),
     "standard": Level(
         1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40, WAVES.format(0.4, 4, 0.3)
     ),
