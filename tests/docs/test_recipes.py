@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from math import cos, pi, sqrt
 from pathlib import Path
 
@@ -18,7 +17,6 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 RADIUS, DENSITY, GRAVITY = 1.5e-3, 1300.0, 9.81
-LATER = 600.0  # s
 MASS = 4.0 / 3.0 * pi * RADIUS**3 * DENSITY
 
 
@@ -36,14 +34,8 @@ def tree(tmp_path_factory):
             path = folder / text.splitlines()[0].removeprefix("# ")
             assert not path.exists()
             path.parent.mkdir(exist_ok=True)
-            write(path, text)
+            path.write_text(text, encoding="utf-8")
     return folder
-
-
-def write(path, text):
-    """Write a file some minutes after the copy was made, as who follows the page does."""
-    path.write_text(text, encoding="utf-8")
-    os.utime(path, (time.time() + LATER,) * 2)
 
 
 def put_in(folder, name, change):
@@ -56,7 +48,7 @@ def put_in(folder, name, change):
         after = "".join(f"{line[1:]}\n" for line in lines if line[0] in " +")
         assert text.count(before) == 1, f"{name} has not once: {before}"
         text = text.replace(before, after)
-    write(path, text)
+    path.write_text(text, encoding="utf-8")
 
 
 def numbers(tree, script):

@@ -8,13 +8,13 @@ from solvers.ship.section import Section
 
 
 def wetted_surface(sections: Sequence[Section | None], weights: np.ndarray, level: np.ndarray) -> float:
-    """S = ∫ G dx + A_ends (Lewis 1988, PNA vol. I, ch. I, sec. 5): girths G under water along her, and flat ends.
+    """S = ∫ G dx + A_ends, by definition for a prism: girths G under water along her, and flat ends.
 
     weights (n,) m sum along the stations; level (n,) m: heights of the water at them. A_ends is what is immersed of the
     outermost stations, such as a transom. At a station without an area the girth is that of a stem or stern frame as
     deep as the station beside it.
 
-    Limits: that the girths slope along her is left out, a per cent or less of a slender hull.
+    Limits: that the girths slope along her is left out, half the mean square of that slope, some (B/L)² of S.
     Units: m, m².
     """
     pairs = zip(sections, level, strict=True)
