@@ -160,7 +160,7 @@ class Ships(Rates):
         for entry in ti.static(range(9)):
             self.tank_frame.of_tank[w, entry] = 0.0
         for k in ti.static(range(len(self.loads))):
-            if ti.static(self.loads[k].pressed):
+            if ti.static(self.loads[k].adds_mass):
                 self.loads[k].sum_added_mass(w, self.tank_frame.of_tank)
         return self.tank_frame.transform_added_mass(w, roll, rate, force)
 
