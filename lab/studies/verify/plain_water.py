@@ -102,7 +102,9 @@ class PlainWater:
         closed = np.where(pressed & (seen > 0.0), volume @ (over * gradient).sum(axis=2), 0.0)
         return self.liquid * (value @ (self.wall_volume * closed / np.maximum(seen, 1e-30)))
 
-    def fullness(self, r: np.ndarray, mass: np.ndarray, s: np.ndarray, plane: float) -> tuple[np.ndarray, np.ndarray]:
+    def void_indicator(
+        self, r: np.ndarray, mass: np.ndarray, s: np.ndarray, plane: float
+    ) -> tuple[np.ndarray, np.ndarray]:
         """½ Σ V (−W'/r) r² + b |Σ V ∇W| over water and walls, b being `plane` (m), and its second part alone."""
         both, volume = np.concatenate([r, self.wall]), np.append(self.volume(mass, s), self.wall_volume)
         apart, _, _, gradient = self.between(r, both)
@@ -178,7 +180,7 @@ class EarthWater(PlainWater):
         self.stand(time)
         push, slope, _ = self.push(r, u, s, mass)
         pressed = self.wall_pressure(r, mass, s) > 0.0
-        full, lacking = self.fullness(r, mass, s, self.plane)
+        full, lacking = self.void_indicator(r, mass, s, self.plane)
         u = u + dt * (push + self.gravity)
         middle = r + 0.5 * dt * u
         self.stand(time + 0.5 * dt)

@@ -84,7 +84,7 @@ def check_a_step(run: Simulation) -> np.ndarray:
     u = u + dt * (push + plain.gravity)
     middle = r + 0.5 * dt * u
     found, numbers, told = held(run), run.water.constants.numbers, run.water.forces.voids
-    full, lacking = plain.fullness(r, m, before, numbers["plane"])
+    full, lacking = plain.void_indicator(r, m, before, numbers["plane"])
     s = before + dt * (plain.rate(middle, u, before, m, slope, pressed) + plain.keeping(full, lacking, before))
     s = s / (1.0 + dt * numbers["relief"] * np.clip((PACKING - full) / RAMP, 0.0, 1.0))
     np.testing.assert_allclose(run.water.particles.read(told.indicator)[0][0], full, atol=1e-9)
