@@ -38,7 +38,7 @@ class MadeFootage:
 
     outline: np.ndarray
     spacing: float
-    place: list[np.ndarray]
+    position: list[np.ndarray]
     velocity: list[np.ndarray]
     pressure: list[np.ndarray]
     time: np.ndarray
@@ -107,12 +107,12 @@ def standing_wave(spacing: float = 6e-3, depth: float = 0.2, height: float = 0.0
     def surface(y: np.ndarray, now: float) -> np.ndarray:
         return np.interp(y, *(line + np.cos(omega * now) * ways(line)).T)
 
-    found = {"place": [], "velocity": [], "pressure": []}
+    found = {"position": [], "velocity": [], "pressure": []}
     rest = filled(lambda p: p[:, 1] < depth, outline, spacing, rough=0.1)
     way = ways(rest)
     for now in time:
         place = rest + np.cos(omega * now) * way
-        found["place"].append(place)
+        found["position"].append(place)
         found["velocity"].append(-omega * np.sin(omega * now) * way)
         found["pressure"].append(DENSITY * GRAVITY * np.maximum(surface(place[:, 0], now) - place[:, 1], 0.0))
     series_time = np.linspace(0.0, time[-1], 300)

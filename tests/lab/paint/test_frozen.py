@@ -70,7 +70,7 @@ def test_both_ships_are_in_one_film_each_in_her_sea_and_a_loss_is_told_below_the
         assert len(red[0]) > 500 and not (np.abs(before.astype(int) - film._theme.lost).max(axis=2) < 2).any()
         keel = film.tank_camera(0, last).pixels(footage.sea.hull)[:, 1].max()
         assert red[0].min() > keel
-        one, other = film._stage._cells.boxes
+        one, other = film._view._cells.boxes
         assert not overlap(one, other) and one[1] == other[1] and one[3] == other[3]
         for left, top, right, bottom in (one, other):  # sea from edge to edge
             sea = after[bottom - 60, left:right].astype(int)

@@ -73,7 +73,7 @@ def test_the_painted_area_of_still_water_is_its_volume(spacing, turn):
     """Within 1 %; beside slanted walls this measure leaves out the pixels that wall and water share, half a row."""
     made = still(spacing=spacing)
     shared = 0.5 * (0.9 + 2.0 * 0.2) / SCALE if turn else 0.0
-    assert area(made, camera_of(turn)) + shared == pytest.approx(len(made.place[0]) * spacing**2, rel=0.01)
+    assert area(made, camera_of(turn)) + shared == pytest.approx(len(made.position[0]) * spacing**2, rel=0.01)
 
 
 def test_the_painted_area_of_a_drop_and_of_spray_is_their_volume():
@@ -126,8 +126,8 @@ def test_no_gap_shows_between_water_and_walls_and_none_is_painted_behind_them(sh
 @pytest.mark.parametrize("colour", ["water", *FIELDS])
 def test_mirrored_water_gives_the_mirrored_picture(colour):
     wave = standing_wave(SPACING)
-    turned = [place * [-1.0, 1.0] for place in wave.place], [u * [-1.0, 1.0] for u in wave.velocity]
-    mirrored = replace(wave, place=turned[0], velocity=turned[1], pose=wave.pose[:, 0])
+    turned = [place * [-1.0, 1.0] for place in wave.position], [u * [-1.0, 1.0] for u in wave.velocity]
+    mirrored = replace(wave, position=turned[0], velocity=turned[1], pose=wave.pose[:, 0])
     one, other = (painted(made, colour, frame=4) for made in (wave, mirrored))
     if colour == "vorticity":  # a mirror turns it to the other side
         assert np.abs(shares(wave, colour, frame=4)[:, ::-1] - shares(mirrored, colour, frame=4)).max() < 0.02
@@ -218,7 +218,7 @@ def test_particles_are_discs_that_do_not_touch():
 def test_water_that_is_gone_or_far_away_is_left_out():
     made = still()
     before = painted(made)
-    made.place[0] = np.concatenate([made.place[0], [[np.nan, np.nan], [1e9, 0.0], [0.0, -np.inf]]])
+    made.position[0] = np.concatenate([made.position[0], [[np.nan, np.nan], [1e9, 0.0], [0.0, -np.inf]]])
     made.velocity[0] = np.concatenate([made.velocity[0], np.full((3, 2), np.nan)])
     made.pressure[0] = np.concatenate([made.pressure[0], [np.nan] * 3])
     np.testing.assert_array_equal(painted(made), before)
@@ -245,7 +245,7 @@ def test_the_picture_of_water_does_not_depend_on_the_number_of_threads():
 @pytest.mark.parametrize("colour", ["water", *FIELDS])
 def test_odd_numbers_of_water_give_a_picture(colour, value):
     made = still()
-    for values in (made.place[0][:5], made.velocity[0][5:10], made.pressure[0][10:15]):
+    for values in (made.position[0][:5], made.velocity[0][5:10], made.pressure[0][10:15]):
         values[:] = value
     assert (painted(made, colour) < 255).any()
 
@@ -385,7 +385,7 @@ def test_a_breaking_surface_foams_and_a_gravity_wave_does_not():
     assert not foam(place, jostled, level, SPACING, 0.5)[~surface].any()
     wave = standing_wave()
     for frame in range(len(wave.time)):
-        velocity, at = wave.velocity[frame], wave.place[frame]
+        velocity, at = wave.velocity[frame], wave.position[frame]
         assert foam(at, velocity, np.full(len(at), 0.8), wave.spacing, float(np.ptp(wave.outline[:, 1]))).max() < 0.1
 
 
