@@ -11,9 +11,9 @@ from solvers.grains.making import make_grains
 from solvers.grains.timestep import limits_of_grains
 from solvers.liquid.matter import make_liquid
 from solvers.machine.limit import Limit
+from solvers.tank.context import Context
 from solvers.tank.given import Given
 from solvers.tank.matter import Matter
-from solvers.tank.setting import Setting
 
 # In the order in which their phases act: the bounds on a step of a scene in which particles meet at a speed (m/s), and
 # what makes a matter of a scene, or None where another one does.
@@ -28,9 +28,9 @@ def limits_of(scene, closing: float) -> list[Limit]:
     return [limit for kind, (limits, _) in MATTERS.items() if scene.of(kind) for limit in limits(scene, closing)]
 
 
-def setting_of(run) -> Setting:
+def context_of(run) -> Context:
     """What the matters of a `solvers.simulation.Simulation` are made in."""
-    return Setting(
+    return Context(
         arrays=run.arrays,
         worlds=run.scene.worlds,
         axes=run.scene.axes,
@@ -43,16 +43,16 @@ def setting_of(run) -> Setting:
         carrier=run.carrier,
         skin=run.skin,
         room=run.room,
-        stretch=run.stretch,
+        largest_multiple=run.largest_multiple,
         vectors=run.vectors,
         among=run.among,
     )
 
 
-def made(scene, setting: Setting) -> list[Matter]:
+def made(scene, context: Context) -> list[Matter]:
     """The matters of a scene (`solvers.scene.Scene`). Raises Unavailable."""
     found: list[Matter] = []
     for make in (make for kind, (_, makes) in MATTERS.items() if scene.of(kind) for make in makes):
-        matter = make(scene, replace(setting, wide=all(other.wide for other in found)))
+        matter = make(scene, replace(context, wide=all(other.wide for other in found)))
         found += [matter] if matter else []
     return found

@@ -12,7 +12,7 @@ from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
-from solvers.matters import made, setting_of
+from solvers.matters import context_of, made
 from solvers.motion.carrier import make_carrier
 from solvers.motion.moved import make_pieces
 from solvers.motion.sampler import Sampler
@@ -37,8 +37,8 @@ class Simulation:
 
     `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; the `skin` (m) of the Verlet lists, by default wider
     for faster grains, affects speed only. `units` is the number of units per world, by default the schedule's choice.
-    The scene's step is the base step; while grains are slow, steps are up to `stretch` times as long, a power of two.
-    Raises Unavailable.
+    The scene's step is the base step; while grains are slow, steps are up to `largest_multiple` times as long, a power
+    of two. Raises Unavailable.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Simulation:
         skin: float | None = None,
         arch: str = "auto",
         units: int | None = None,
-        stretch: int = 1,
+        largest_multiple: int = 1,
     ):
         self.threads = threads or runtime.available_cores()
         worlds, count = scene.worlds, moved(scene)
@@ -61,7 +61,9 @@ class Simulation:
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
-        self.stretch = max(stretch, *(matter.soft_multiple for matter in scene.matters), 1) if alone else 1
+        self.largest_multiple = (
+            max(largest_multiple, *(matter.soft_multiple for matter in scene.matters), 1) if alone else 1
+        )
         self.vectors = min((matter.lanes(scene.precision) for matter in scene.matters), default=wide.lanes())
         self.steps, self.room, self.among, self.skin = 0, 1, worlds, skin  # `among`: worlds at the start
         # Short kernels; and of discs beside water, which are 1.4 times as fast so, though they compile twice as long
@@ -80,12 +82,12 @@ class Simulation:
         self.parts = make_pieces(arrays, scene.parts, worlds)
         self.walls = Walls(arrays, scene.tanks, self.parts, scene.apart)
         self.carrier = make_carrier(arrays, scene, self.dt)
-        setting = setting_of(self)
-        matters = made(scene, setting)
+        context = context_of(self)
+        matters = made(scene, context)
         self.matters = {matter.name: matter for matter in matters}
         loads = [matter.load for matter in matters]
         self.carrier.bear(loads)
-        self.clock = Clock(arrays, setting.units(max((matter.in_bands for matter in scene.matters), default=0)))
+        self.clock = Clock(arrays, context.units(max((matter.in_bands for matter in scene.matters), default=0)))
         sequence = Sequence(matters, self.carrier)
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
@@ -139,7 +141,7 @@ class Simulation:
 
     def whole(self, steps: int) -> int:
         """The largest number of base steps, up to `steps`, that cuts no longer step; at least one such step."""
-        return (least := lcm(self.stretch, self.exchange_interval)) * max(1, steps // least)
+        return (least := lcm(self.largest_multiple, self.exchange_interval)) * max(1, steps // least)
 
     def advance(self, steps: int) -> None:
         """Advance every world by `steps` base steps, as many as `whole` says where matters have steps of their own.

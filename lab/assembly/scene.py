@@ -76,7 +76,7 @@ def vessels(preset: Preset) -> list[Vessel]:
     return [make_vessel(preset.ship, preset.sea, preset.waves, preset.run.gravity, water_aboard(preset))]
 
 
-def stretch(preset: Preset) -> int:
+def largest_multiple(preset: Preset) -> int:
     """How many times the derived step a step may be long while grains are slow; a step that is given stays as it is."""
     return LONGEST_STRIDE if preset.grains and preset.run.step == "auto" else 1
 
@@ -108,7 +108,7 @@ def _soft_multiple(preset: Preset, scene: Scene, wanted: float) -> int:
 def _step(preset: Preset, scene: Scene) -> float:
     """The step (s): as given, else derived, else the sampling interval, which it divides in any case."""
     limits, run, interval = scene.step_limits(), preset.run, 1.0 / preset.record.series_rate
-    wanted, longest, usual = run.step, stretch(preset), scene.longest_step(LEVELS[run.accuracy].longer_steps)
+    wanted, longest, usual = run.step, largest_multiple(preset), scene.longest_step(LEVELS[run.accuracy].longer_steps)
     if run.step == "auto":
         share = _base_share(scene, longest)
         if scene.grains:
@@ -123,7 +123,7 @@ def _step(preset: Preset, scene: Scene) -> float:
     # Between two rows of the series lies a whole number of the longest steps, of grains and of water.
     count = longest * max(1, ceil(interval / (longest * wanted) - 1e-9))
     of_water = ceil(count / longest_pace(scene, interval / count))
-    pace = ceil(count / of_water)
+    substeps = ceil(count / of_water)
     if scene.fluid:
-        scene.matters = scene.holding(replace(scene.fluid, pace=pace)).matters
-    return interval / (of_water * pace)
+        scene.matters = scene.holding(replace(scene.fluid, substeps=substeps)).matters
+    return interval / (of_water * substeps)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
-from lab.assembly.scene import build, stretch
+from lab.assembly.scene import build, largest_multiple
 from lab.assembly.water import most_drops, particles, updates
 from lab.measures.ship_frozen import step_of
 from lab.preset.fields import join, taken_by
@@ -120,7 +120,7 @@ def _one_bed(preset: Preset) -> Simulation:
     schedule = choose_schedule(run.schedule, arch, *sizes, scene.responds)
     units = units_a_world(schedule, *sizes)
     placed = replace(scene, schedule=schedule), position, run.threads
-    return Simulation(*placed, arch=arch, units=units, stretch=stretch(preset))
+    return Simulation(*placed, arch=arch, units=units, largest_multiple=largest_multiple(preset))
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> str:
@@ -183,10 +183,10 @@ def _step(simulation: Simulation) -> list[tuple[str, str]]:
     scene = simulation.scene
     limits = [f"{show(limit.step, 's')}: {limit.reason}" for limit in scene.step_limits()]
     limits = limits or ["the interval between samples: the tank's motion is exact at any time"]
-    pace = scene.fluid.pace if scene.fluid else 1
-    of_water = [("of the water", f"{show(pace * scene.step, 's')}, {pace} steps in one")] * (pace > 1)
+    substeps = scene.fluid.substeps if scene.fluid else 1
+    of_water = [("of the water", f"{show(substeps * scene.step, 's')}, {substeps} steps in one")] * (substeps > 1)
     if scene.fluid and scene.fluid.water.softened is not scene.fluid.water:
-        of_water = [("while the air is soft", water.soft_step(scene, simulation.stretch))]
+        of_water = [("while the air is soft", water.soft_step(scene, simulation.largest_multiple))]
     return [("step", show(scene.step, "s")), *of_water, *((f"limit {k + 1}", limit) for k, limit in enumerate(limits))]
 
 
@@ -270,7 +270,7 @@ def _stepping(duration: float, preset, scene) -> float:
         shapes = scene.grains.shapes
         a_step += scene.grains.count / (OUTLINES_PER_CORE[shapes.contact] if shapes else GRAIN_STEPS_PER_CORE)
     if scene.fluid:
-        a_step += scene.fluid.count / scene.fluid.pace / DROP_STEPS_PER_CORE
+        a_step += scene.fluid.count / scene.fluid.substeps / DROP_STEPS_PER_CORE
     return rounds * _steps(scene, duration) * a_step
 
 

@@ -62,16 +62,19 @@ def _skin(skin: Skin) -> str:
 
 def _longer_steps(simulation: Simulation) -> Rows:
     """When steps are longer than the step that is told, which the run time takes no account of."""
-    if not (simulation.grains.paced and simulation.carrier.paced):
+    if not (simulation.grains.has_multiples and simulation.carrier.has_multiples):
         return []
-    calm = calm_speed(simulation.scene, float(simulation.stretch))
+    calm = calm_speed(simulation.scene, float(simulation.largest_multiple))
     if not calm:
         return [("slow grains", "steps are never longer: they do not follow from the grains' speeds")]
     when = f"while no two grains may meet faster than {show(calm, 'm/s')}"
     share = simulation.scene.grains.base_share
     room = f", for which they are shortened to {share:.2f} of the derived one" if share < 1.0 else ""
     return [
-        ("slow grains", f"steps are {simulation.stretch} times as long {when}{room}; the run time below counts none")
+        (
+            "slow grains",
+            f"steps are {simulation.largest_multiple} times as long {when}{room}; the run time below counts none",
+        )
     ]
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from lab.assembly.drawn import classes
 from lab.assembly.grains import fixed_of, radii_of
-from lab.assembly.scene import build, stretch
+from lab.assembly.scene import build, largest_multiple
 from lab.assembly.water import air_volumes_of, particles, updates, volumes_of
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
@@ -136,10 +136,10 @@ class Batch:
         self.stopped: dict[Path, BadState] = {}
         preset = runs[0].loaded.resolved  # the runs agree in all values that are read here
         self._duration, self._record = preset.duration, preset.record
-        self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch, stretch=stretch(preset))
-        self._settling = settling(preset)
+        run, longest = preset.run, largest_multiple(preset)
+        self._simulate = partial(Simulation, threads=run.threads, arch=run.arch, largest_multiple=longest)
+        self._settling, self._saved = settling(preset), time.monotonic()
         self._a_call = GRAIN_STEPS_A_CALL * runs[0].scene.worlds // work(runs[0].scene)
-        self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:
         """Settle the beds, or restore a checkpoint, and open the recordings."""

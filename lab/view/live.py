@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.scene import build, stretch
+from lab.assembly.scene import build, largest_multiple
 from lab.assembly.water import updates
 from lab.base.errors import LabError
 from lab.base.progress import Progress
@@ -103,7 +103,13 @@ class Live:
 
     def _start(self, scene, position) -> Simulation:
         settings = self.preset.run
-        return Simulation(scene, position, threads=settings.threads, arch=settings.arch, stretch=stretch(self.preset))
+        return Simulation(
+            scene,
+            position,
+            threads=settings.threads,
+            arch=settings.arch,
+            largest_multiple=largest_multiple(self.preset),
+        )
 
     @property
     def time(self) -> float:

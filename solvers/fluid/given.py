@@ -146,7 +146,8 @@ class Fluid(Given):
 
     Those of air come last. `in_tanks`: how many particles are in each tank of a world, by their numbers one after the
     other; (): all are in the first. Fluid of different tanks never meets, though they may overlap in the plane. A step
-    of the fluid is `pace` steps of the scene, more than 1 in ships alone, and while its air is soft `soft_multiple`.
+    of the fluid is `substeps` steps of the scene, more than 1 in ships alone, and while its air is soft
+    `soft_multiple`.
     """
 
     simple: ClassVar = False  # its kernels are long
@@ -154,7 +155,7 @@ class Fluid(Given):
     water: Water
     particles: Annotated[np.ndarray, EachWorld(lambda fluid: fluid.count), NotOfBed()]
     in_tanks: tuple[int, ...] = ()
-    pace: Annotated[int, NotOfBed()] = 1
+    substeps: Annotated[int, NotOfBed()] = 1
     soft_multiple: Annotated[int, NotOfBed()] = 1
 
     @property

@@ -15,7 +15,7 @@ from solvers.machine.units import Units
 from solvers.motion.poses import Poses
 from solvers.space.axes import dot
 
-NEVER = 1e30  # m, a displacement that makes the lists stale
+NEVER = 1e30  # m, a displacement that makes the lists invalid
 SKIN = (0.3, 1.2)  # spacings: the skin in a still tank, and in a violent one
 LASTING = 6  # steps for which a list should last: the skin follows from the speed at the last rebuild
 FASTER = 1.25  # what particles may gain in speed until the next step
@@ -27,10 +27,10 @@ CROWDED = 1.6  # times the neighbours of a square block at rest: room for those 
 class Lists:
     """Neighbours of each block: `near`, of water in water; `beside`, walls beside water; `facing`, water before walls.
 
-    An entry is a slot in all blocks of all worlds, and where space is periodic the image in which it is seen. `travel`
-    (units,) m bounds how far any particle of a unit has moved since the lists were built, `last` (m) how far in the
-    last step; `skin` (units,) m was allowed for. `walls` are the wall particles' first slots by key. In `beside` those
-    of the tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
+    An entry is a slot in all blocks of all worlds, and where space is periodic the image in which it is seen.
+    `displacement` (units,) m bounds how far any particle of a unit has moved since the lists were built, `last` (m) how
+    far in the last step; `skin` (units,) m was allowed for. `walls` are the wall particles' first slots by key. In
+    `beside` those of the tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Lists:
         self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), *ends)
         self.facing = Listing(arrays, units, "facing", dry, crowd * dry, *ends)
         self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
-        self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
+        self.displacement = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
 
     @staticmethod
@@ -72,24 +72,24 @@ class Lists:
 
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
-        self.travel.fill(NEVER)
+        self.displacement.fill(NEVER)
 
     @ti.func
-    def worn(self, u):
+    def may_be_invalid(self, u):
         """Whether two particles may come within reach of each other unlisted in the coming step."""
-        return self.travel[u] + FASTER * self.last[u] > 0.5 * self.skin[u]
+        return self.displacement[u] + FASTER * self.last[u] > 0.5 * self.skin[u]
 
     @ti.func
-    def stale(self, u):
-        """As `worn`, by the particles' true displacements."""
+    def invalid(self, u):
+        """As `may_be_invalid`, by the particles' true displacements."""
         old = False
-        if self.worn(u):
+        if self.may_be_invalid(u):
             old = True
-            if self.travel[u] < 0.5 * NEVER:
+            if self.displacement[u] < 0.5 * NEVER:
                 moved = self.moved(u)
                 if moved + FASTER * self.last[u] <= 0.4 * self.skin[u]:
                     old = False
-                    self.travel[u] = moved
+                    self.displacement[u] = moved
         return old
 
     @ti.func
@@ -146,9 +146,9 @@ class Lists:
             fits = fits and found < self.facing.capacity
             if ti.static(self.bodies.moving):
                 self.bodies.note_built(u)
-        self.travel[u], self.skin[u] = 0.0, skin
+        self.displacement[u], self.skin[u] = 0.0, skin
         if not fits:
-            self.travel[u] = NEVER
+            self.displacement[u] = NEVER
         return fits
 
     @ti.func

@@ -32,8 +32,8 @@ from solvers.machine.state import Axes
 from solvers.motion.carrier import per_slab
 from solvers.motion.poses import Poses
 from solvers.ship.body import Body, frozen
+from solvers.tank.context import Context
 from solvers.tank.matter import Matter
-from solvers.tank.setting import Setting
 from solvers.tank.substeps import Substeps
 
 
@@ -44,52 +44,52 @@ class WaterMatter(Matter):
     name = "water"
     of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force", "part_force")  # known only after a step
 
-    def __init__(self, scene, setting: Setting):
+    def __init__(self, scene, context: Context):
         fluid: Fluid = scene.fluid.softened
         self.scene, self.fluid, self.water = scene, fluid, (water := fluid.water)
-        arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], fluid.count
-        lanes = LANES if setting.wide and not setting.per_particle else 1
+        arrays, worlds, tank, count = context.arrays, context.worlds, scene.tanks[0], fluid.count
+        lanes = LANES if context.wide and not context.per_particle else 1
         self.wide = lanes > 1
         layers = WallLayers(water, scene.tanks, scene.fills)
-        grid = grid_round(water, fluid.particles["position"], scene.tanks, setting.walls.bounds, lanes)
+        grid = grid_round(water, fluid.particles["position"], scene.tanks, context.walls.bounds, lanes)
         slots, blocks, first = grid.arranged(layers.points, layers.tanks)
-        self.bodies = Bodies(arrays, setting.parts, water, scene, lanes)
+        self.bodies = Bodies(arrays, context.parts, water, scene, lanes)
         self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.gas = fluid.particles["gas"].astype(float)
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
-        sizes = setting.axes, worlds, count, lanes, walls, grid.strips
-        self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among, water.gap > 0.0)
-        self.units = units = setting.units(p.fluid_blocks)
-        self.load = setting.load(arrays.under("water"), units, fluid.pace)
+        sizes = context.axes, worlds, count, lanes, walls, grid.strips
+        self.particles = p = Particles(arrays, *sizes, shifting, water.air, context.among, water.gap > 0.0)
+        self.units = units = context.units(p.fluid_blocks)
+        self.load = context.load(arrays.under("water"), units, fluid.substeps)
         self.load.lag(wall_added_mass(scene, layers), water.added_mass == "layer")
         self.wall_points = slots, blocks, layers.volumes, layers.firm
         ranges, self.constants = WorkRanges(p, units), Constants(arrays, water, scene.gravity)
-        self.poses = Poses(arrays, setting.carrier, worlds, fluid.pace > 1)
+        self.poses = Poses(arrays, context.carrier, worlds, fluid.substeps > 1)
         of_parts = np.array(self.bodies.tanks, dtype=int)[self.bodies.solids.owner]
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, slots, layers.tanks, of_parts))
         self.bodies.join(arrays, p, self.order, ranges, self.poses, units)
-        self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, setting.room)
-        self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.pace)
-        context = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
-        tangential = TangentialCorrection(arrays, context, layers, slots, scene.tanks)
-        self.extrapolation = Extrapolation(arrays, context, tangential)
-        self.forces = Forces(arrays, context, self.extrapolation, self.load, tank.thickness)
-        self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, setting.stretch)
-        self.paced = self.sound_switch.paced
-        self.continuity, self.vent = Continuity(arrays, context, self.forces), OutflowVent(arrays, context, water.air)
-        self.mover = Mover(arrays, context, self.extrapolation, self.vent, self.forces.voids, substeps)
+        self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, context.room)
+        self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.substeps)
+        shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
+        tangential = TangentialCorrection(arrays, shared, layers, slots, scene.tanks)
+        self.extrapolation = Extrapolation(arrays, shared, tangential)
+        self.forces = Forces(arrays, shared, self.extrapolation, self.load, tank.thickness)
+        self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
+        self.has_multiples = self.sound_switch.has_multiples
+        self.continuity, self.vent = Continuity(arrays, shared, self.forces), OutflowVent(arrays, shared, water.air)
+        self.mover = Mover(arrays, shared, self.extrapolation, self.vent, self.forces.voids, substeps)
         probes = [slots[slot] + p.fluid_blocks * lanes for slot in layers.probes]
         self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, layers.open)
-        pool = Pool.of(scene, setting.walls, self.order)
-        self.edges = Edges(arrays, context, self.extrapolation, layers, slots, scene.tanks, pool.first, water)
-        self.diagnostics = Diagnostics(arrays, p, self.constants, setting.carrier, pool, water.levels)
+        pool = Pool.of(scene, context.walls, self.order)
+        self.edges = Edges(arrays, shared, self.extrapolation, layers, slots, scene.tanks, pool.first, water)
+        self.diagnostics = Diagnostics(arrays, p, self.constants, context.carrier, pool, water.levels)
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * fluid.particles["volume"].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = substeps.first(self._before()), substeps.last([Phase(self.note_passage)])
-        correction = [DivergenceCorrection(arrays, context, layers, slots).correct] if self.continuity.corrects else []
+        correction = [DivergenceCorrection(arrays, shared, layers, slots).correct] if self.continuity.corrects else []
         acts = self.mover.kick, *correction, self.continuity.continuity_pass, self.finish
         self.after = substeps.last(Phase(act, units) for act in acts)
 
@@ -150,17 +150,17 @@ class WaterMatter(Matter):
     @ti.func
     def way(self, u, t):
         """How far (m) any particle of a unit has gone since there are lists; huge where there are none."""
-        return self.lists.travel[u]
+        return self.lists.displacement[u]
 
     @ti.func
-    def stale(self, u, t):
+    def invalid(self, u, t):
         """Whether two particles may come within reach of each other unlisted in the coming step."""
-        return self.lists.stale(u)
+        return self.lists.invalid(u)
 
     @ti.func
-    def worn(self, u, t):
+    def may_be_invalid(self, u, t):
         """Whether that may be so by a bound on what particles have travelled."""
-        return self.lists.worn(u)
+        return self.lists.may_be_invalid(u)
 
     @ti.func
     def sort(self, w):
@@ -176,9 +176,9 @@ class WaterMatter(Matter):
         return fits
 
     @ti.func
-    def pace(self, w):
+    def allowed_multiple(self, w):
         """The largest multiple of a world: more than 1 while its air is soft."""
-        return self.sound_switch.pace()
+        return self.sound_switch.allowed_multiple()
 
     @property
     def changes(self) -> int:
@@ -291,10 +291,10 @@ class WaterMatter(Matter):
         self.sound_switch.restore(state, self.scene.gravity)
 
 
-def make_water(scene, setting: Setting) -> WaterMatter | None:
+def make_water(scene, context: Context) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where they do not move one by one. Raises Unavailable."""
     if not scene.fluid.moved:
         return None
     refuse_scene(scene.fills, bool(scene.grains))
     refuse_reduced(scene)
-    return WaterMatter(scene, setting)
+    return WaterMatter(scene, context)

@@ -118,7 +118,7 @@ class Mover:
             self.bodies.place(u, AT_END)
             whole = ti.max(whole, self.bodies.way[w])
         self.lists.last[u] = whole
-        self.lists.travel[u] = self.lists.travel[u] + whole
+        self.lists.displacement[u] = self.lists.displacement[u] + whole
         self.fastest[u], self.deviation[u] = 2.0 * second / dt, deviated
         if ti.static(c.two):
             self.fastest[u] = 2.0 * ti.sqrt(self.largest(paced)) / dt

@@ -92,7 +92,7 @@ def steps_of_water(scene, steps: int) -> int:
     if fluid is None:
         return steps
     soft = min(steps, stiff_step(scene)) if fluid.soft_multiple > 1 else 0
-    return soft // fluid.soft_multiple + (steps - soft) // fluid.pace
+    return soft // fluid.soft_multiple + (steps - soft) // fluid.substeps
 
 
 def of_air(water: Water) -> Water:

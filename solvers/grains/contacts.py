@@ -78,7 +78,7 @@ class Contacts:
             slip, turning = tangent.slip(velocity, normal, surfaces), [spin_i[k] - spin_j[k] for k in turns]
             fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, turning, None, dt)
             if ti.static(self.laws.cohesive):
-                fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
+                fn = fn - self.laws.cohesive_force(pairs, u, block, approach, rate, dt)
             force, arm, back = tangent.force(normal, fn, ft), tangent.arm(normal, ft), [minus(roll[k]) for k in turns]
             turn_i, turn_j = tangent.torque(lever_i, arm, roll), tangent.torque(lever_j, arm, back)
             self.push_both(g, pairs, u, block, i, force, [turn_i, turn_j])
@@ -200,7 +200,7 @@ class Contacts:
             met = ti.Vector([approach]), ti.Vector([rate])
             fn, ft, roll = self.laws.forces(WALL, contacts, u, p, *met, slips, turning, None, dt)
             if ti.static(self.laws.cohesive):
-                fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
+                fn = fn - self.laws.cohesive_force(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
             shear = [ft[k][0] for k in turns]
             torque = tangent.torque(lever, tangent.arm(normal, shear), [roll[k][0] for k in turns])
             self.push_off(g, w, i, u, feature, tangent.force(normal, fn[0], shear), torque, load)

@@ -50,7 +50,7 @@ class Grains(Given):
     fixed: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     shapes: Annotated[Shapes | None, EachWorld(lambda grains: grains.shapes and grains.shapes.alike)] = None
     integrator: str = "verlet"
-    pace: ClassVar = 1
+    substeps: ClassVar = 1
     soft_stride: ClassVar = 1
     interfaces_of: list[tuple[Interface, ...]] = field(init=False)  # per world, in the row order of `ChosenLaws`
 

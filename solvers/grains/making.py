@@ -16,30 +16,30 @@ from solvers.grains.shapes.rules.continuous import Continuous
 from solvers.grains.shapes.rules.discrete import Discrete
 from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import GrainState
-from solvers.tank.setting import Setting
+from solvers.tank.context import Context
 
 RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 
 
-def make_grains(scene, setting: Setting) -> GrainMatter:
+def make_grains(scene, context: Context) -> GrainMatter:
     """The grains of a scene (`solvers.scene.Scene`)."""
     given = scene.grains
-    arrays, walls, count = setting.arrays, setting.walls, given.count
-    units = setting.units(count, len(given.fixed))
-    load = setting.load(arrays.under("grains"), units)
+    arrays, walls, count = context.arrays, context.walls, given.count
+    units = context.units(count, len(given.fixed))
+    load = context.load(arrays.under("grains"), units)
     may_leave = any(tank.open_edges for tank in scene.tanks)
     state = given.radius, given.density, given.fixed, units.ghosts, may_leave, given.kind
     integrator = INTEGRATORS[given.integrator]()
-    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator, setting.axes)
-    laws.wide = setting.vectors if laws.fit and given.bears_vectors and not units.single else 0
+    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator, context.axes)
+    laws.wide = context.vectors if laws.fit and given.bears_vectors and not units.single else 0
     moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
     discs = given.shapes is None
-    grains = GrainState(arrays, setting.axes, *state) if discs else ShapedState(arrays, given.shapes, *state)
+    grains = GrainState(arrays, context.axes, *state) if discs else ShapedState(arrays, given.shapes, *state)
     together = discs and units.whole
-    early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
-    wide = widths(scene, setting.skin, units.single, together)
+    early = 0.5 * context.largest_multiple * scene.time_step() * scene.credible_speed()
+    wide = widths(scene, context.skin, units.single, together)
     skin = Skin(arrays, grains, wide, given.longest_bridge, early, together, walls.moving)
-    lists = given.farthest_reach, skin, laws, moduli, setting.room
+    lists = given.farthest_reach, skin, laws, moduli, context.room
     if discs:
         neighbours = Neighbours(arrays, units, grains, walls, *lists)
         contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
@@ -47,5 +47,5 @@ def make_grains(scene, setting: Setting) -> GrainMatter:
         rule = RULES[given.shapes.contact](arrays, units, walls, given.shapes, laws.wide)
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
-    mover = Mover(arrays, units, grains, integrator, setting.carrier.rotating)
-    return GrainMatter(scene, setting, load, grains, neighbours, contacts, mover)
+    mover = Mover(arrays, units, grains, integrator, context.carrier.rotating)
+    return GrainMatter(scene, context, load, grains, neighbours, contacts, mover)

@@ -20,9 +20,9 @@ from solvers.machine.state import Axes
 from solvers.motion.carrier import per_metre
 from solvers.ship.body import Body
 from solvers.space.axes import dot
+from solvers.tank.context import Context
 from solvers.tank.load import Load
 from solvers.tank.matter import Matter
-from solvers.tank.setting import Setting
 
 # A speed (m/s) whose 16th power is no number in 32 bits any more.
 UNSEEN = 5e-3
@@ -42,29 +42,31 @@ class GrainMatter(Matter):
     def __init__(
         self,
         scene,
-        setting: Setting,
+        context: Context,
         load: Load,
         grains: GrainState,
         lists: Neighbours,
         contacts: Contacts,
         mover: Mover,
     ):
-        arrays, walls, units = setting.arrays, setting.walls, load.units
+        arrays, walls, units = context.arrays, context.walls, load.units
         given = scene.grains
         self.scene, self.units, self.load, self.grains, self.lists = scene, units, load, grains, lists
         self.contacts, self.mover, self.mass = contacts, mover, grains.mass
         self.wide = lists.pairs.wide
         # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
         self.numbering = Numbering(arrays, grains, lists, 2.0 * given.mean_radius, given.shapes is None)
-        self.census = Census(arrays, units, grains, walls, lists, contacts, setting.carrier)
+        self.census = Census(arrays, units, grains, walls, lists, contacts, context.carrier)
         self.presser = Presser(units, grains, walls, lists, contacts)
         own = arrays.under("grains")
         self.unseen = UNSEEN if own.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
         way = np.array([FASTEST_STEP * given.sizes[0]])
         self.way_a_step = own.holding("way_a_step", way, "one", own.exact)
-        self.stretch = 1 if given.integrator == "gear" else setting.stretch  # Gear's derivatives are of one step
-        self.paced, self.doublings = self.stretch > 1, int(np.log2(self.stretch))
-        if self.paced:
+        self.largest_multiple = (
+            1 if given.integrator == "gear" else context.largest_multiple
+        )  # Gear's derivatives are of one step
+        self.has_multiples, self.doublings = self.largest_multiple > 1, int(np.log2(self.largest_multiple))
+        if self.has_multiples:
             speeds = [calm_speed(scene, 2.0 ** (k + 1)) for k in range(self.doublings)]
             self.calm = own.holding("calm", np.array(speeds), "doubling")
         self.before = (Phase(self.push, units),)
@@ -99,7 +101,7 @@ class GrainMatter(Matter):
         """Move the grains of a unit; returns whether all of them are slow enough for the step."""
         speed = self.mover.move(self.grains, u, frame, kick, dt)
         if ti.static(not self.units.single):
-            self.lists.wear.travel[u] = self.lists.wear.travel[u] + (speed + self.unseen) * dt
+            self.lists.validity.displacement[u] = self.lists.validity.displacement[u] + (speed + self.unseen) * dt
         return self.is_sound(u, speed, dt)
 
     @ti.func
@@ -117,34 +119,34 @@ class GrainMatter(Matter):
     @ti.func
     def way(self, u, t):
         """How far (m) any grain of a unit has gone since there are lists; huge where there are none."""
-        wear = self.lists.wear
-        moved = wear.travel[u]
+        validity = self.lists.validity
+        moved = validity.displacement[u]
         if moved == 0.0:  # there are lists; without, it says NEVER
-            moved = wear.moved(u)
-            if ti.static(wear.walls.moving):
-                moved += 2.0 * wear.walls.moved.gone(self.units.world(u), wear.built_at[u], t)
+            moved = validity.moved(u)
+            if ti.static(validity.walls.moving):
+                moved += 2.0 * validity.walls.moved.gone(self.units.world(u), validity.built_at[u], t)
         return moved
 
     @ti.func
-    def pace(self, w):
+    def allowed_multiple(self, w):
         """Base steps that a step may take: a power of two, by how fast any two grains of a world may meet now."""
-        pace = 1
-        if ti.static(self.paced):
+        allowed_multiple = 1
+        if ti.static(self.has_multiples):
             meeting = HASTE * (2.0 * self.grains.fastest(w) + self.lists.walls.fastest)
             for k in ti.static(range(self.doublings)):
                 if meeting < self.calm[k]:
-                    pace = 2 ** (k + 1)
-        return pace
+                    allowed_multiple = 2 ** (k + 1)
+        return allowed_multiple
 
     @ti.func
-    def stale(self, u, t):
+    def invalid(self, u, t):
         """Whether two grains may be in reach of each other unlisted at time t (s)."""
-        return self.lists.stale(u, t)
+        return self.lists.invalid(u, t)
 
     @ti.func
-    def worn(self, u, t):
+    def may_be_invalid(self, u, t):
         """Whether that may be so by a bound on what grains have travelled."""
-        return self.lists.worn(u, t)
+        return self.lists.may_be_invalid(u, t)
 
     @ti.func
     def asked(self, u):

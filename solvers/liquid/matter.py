@@ -12,8 +12,8 @@ from solvers.machine.state import Axis
 from solvers.machine.units import Units
 from solvers.motion.carrier import per_slab
 from solvers.ship.body import Body, frozen
+from solvers.tank.context import Context
 from solvers.tank.matter import Matter
-from solvers.tank.setting import Setting
 
 MASS, CENTRE_Y, CENTRE_Z, TURNING = range(4)  # columns of the table of tanks
 
@@ -35,12 +35,12 @@ class LiquidMatter(Matter):
     name = "water"
     of_contacts: ClassVar = ()
 
-    def __init__(self, scene, setting: Setting):
+    def __init__(self, scene, context: Context):
         self.scene, self.water = scene, scene.fluid.water
-        arrays, worlds = setting.arrays, setting.worlds
-        self.carrier, self.exact = setting.carrier, arrays.exact
+        arrays, worlds = context.arrays, context.worlds
+        self.carrier, self.exact = context.carrier, arrays.exact
         self.units = Units(worlds, 1, 1, 1)
-        self.load = setting.load(arrays.under("water"), self.units)
+        self.load = context.load(arrays.under("water"), self.units)
         self.load.add_mass(arrays.under("water"))
         self.thickness = scene.tanks[0].thickness
         self.modes: list[Modes] = modes_of(scene)
@@ -171,8 +171,8 @@ class LiquidMatter(Matter):
         return {"water_position": place, "water_velocity": velocity, "water_pressure": still}
 
 
-def make_liquid(scene, setting: Setting) -> LiquidMatter | None:
+def make_liquid(scene, context: Context) -> LiquidMatter | None:
     """The water of a scene (`solvers.scene.Scene`) without particles; None where it has none of that kind."""
     if scene.fluid is None or scene.fluid.moved:
         return None
-    return LiquidMatter(scene, setting)
+    return LiquidMatter(scene, context)

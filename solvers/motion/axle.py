@@ -104,7 +104,7 @@ class OnAxle:
     """
 
     rotating = moving = responds = True
-    paced = False  # leapfrog needs steps of one length
+    has_multiples = False  # leapfrog needs steps of one length
 
     def __init__(self, arrays: State, axles: Sequence[Axle], gravity: float, thickness: float):
         self.share = np.array([axle.share(thickness) for axle in axles])
@@ -146,7 +146,7 @@ class OnAxle:
         }
 
     @ti.func
-    def pace(self, w):
+    def allowed_multiple(self, w):
         """The largest multiple of the base step."""
         return 1
 

@@ -33,7 +33,7 @@ class Prescribed:
 
     responds = False  # the motion does not respond to the cargo's load
     phases = ()  # it has no phases in a step
-    paced = True  # steps may have any length
+    has_multiples = True  # steps may have any length
 
     def __init__(self, arrays: State, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.exact, self.real = arrays.exact, arrays.real
@@ -129,7 +129,7 @@ class Prescribed:
         return ti.Vector([ti.cast(force[k], self.real) for k in ti.static(range(4))])  # whole ones are not for `wide`
 
     @ti.func
-    def pace(self, w):
+    def allowed_multiple(self, w):
         """The largest multiple of the base step: no limit."""
         return ANY
 

@@ -24,7 +24,7 @@ class Ships(Rates):
     """
 
     rotating = moving = responds = True
-    paced = False  # the ship's steps have one length
+    has_multiples = False  # the ship's steps have one length
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
         super().__init__(arrays, vessels, gravity)
@@ -108,7 +108,7 @@ class Ships(Rates):
         return self.tank_frame.passage(w)
 
     @ti.func
-    def pace(self, w):
+    def allowed_multiple(self, w):
         """The largest multiple of the base step."""
         return 1
 

@@ -8,13 +8,13 @@ from solvers.machine import wide
 class Given:
     """What a scene says of one matter, with the answers of one that is simple and moves no particles.
 
-    `worlds`: how many worlds it is given for. `pace` and `soft_multiple`: how many steps of the scene one of its own
-    is, always and while it is soft. `pieces`: how many things of its own bear loads beside the tank's. `thickness` (m)
-    of the tank that suits it, None: any. `start_speed` (m/s): highest closing speed at its start. `simple`: whether its
-    kernels are short.
+    `worlds`: how many worlds it is given for. `substeps` and `soft_multiple`: how many steps of the scene one of its
+    own is, always and while it is soft. `pieces`: how many things of its own bear loads beside the tank's. `thickness`
+    (m) of the tank that suits it, None: any. `start_speed` (m/s): highest closing speed at its start. `simple`: whether
+    its kernels are short.
     """
 
-    pace: int = 1
+    substeps: int = 1
     soft_multiple: int = 1
     start_speed: float = 0.0
     simple: ClassVar[bool] = True

@@ -17,14 +17,14 @@ from solvers.tank.load import Load
 class Matter:
     """The interface of all matters, with the answers of one that has no lists and nothing to say.
 
-    A matter has a `name`, `units`, a `load` on the tank, and the phases of a step: `before` the carrier responds to
-    the load, `between` that and the motion of the particles, and `after`, when these move. If it is
-    `paced`, its steps may be longer than the base step, by as many as its `pace` says. If it has neighbour lists, it
-    says when these are `stale`, `worn` or `asked` for in part, and rebuilds them (`sort`, `make_lists`). `of_contacts`
-    are those of its quantities that are known only after a step. If it `mixes`, its particles are renumbered now and
-    then. If its kernels work on real vectors (`machine.wide`), it is `wide`. `extent` (m) is how far from the tank's
-    origin a particle may be, `nearing` (m/s) how fast parts of the tank come at particles, `changes` the base step of
-    the clock before which it is to `change`.
+    A matter has a `name`, `units`, a `load` on the tank, and the phases of a step: `before` the carrier responds to the
+    load, `between` that and the motion of the particles, and `after`, when these move. If it `has_multiples`, its steps
+    may be longer than the base step, by as many as its `allowed_multiple` says. If it has neighbour lists, it says when
+    these are `invalid`, `may_be_invalid` or `asked` for in part, and rebuilds them (`sort`, `make_lists`).
+    `of_contacts` are those of its quantities that are known only after a step. If it `mixes`, its particles are
+    renumbered now and then. If its kernels work on real vectors (`machine.wide`), it is `wide`. `extent` (m) is how far
+    from the tank's origin a particle may be, `nearing` (m/s) how fast parts of the tank come at particles, `changes`
+    the base step of the clock before which it is to `change`.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Matter:
     before: tuple[Phase, ...] = ()
     between: tuple[Phase, ...] = ()
     after: tuple[Phase, ...] = ()
-    paced = False
+    has_multiples = False
     mixes = False
     wide = False
     of_contacts: ClassVar[Sequence[str]] = ()
@@ -126,17 +126,17 @@ class Matter:
         return 0.0
 
     @ti.func
-    def pace(self, w):
+    def allowed_multiple(self, w):
         """The largest multiple of the base step that a world allows."""
         return 1
 
     @ti.func
-    def stale(self, u, t):
+    def invalid(self, u, t):
         """Whether two particles may be in reach of each other unlisted at time t (s)."""
         return False
 
     @ti.func
-    def worn(self, u, t):
+    def may_be_invalid(self, u, t):
         """Whether that may be so by cheap bounds on the displacements."""
         return False
 

@@ -54,7 +54,7 @@ class Substeps:
         if ti.static(self.long):
             rebuilds = 0
             for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
-                if self.lists.stale(u):
+                if self.lists.invalid(u):
                     rebuilds = 1
             self.rebuilding[w] = rebuilds
         if rebuilds > 0:

@@ -18,11 +18,10 @@ class Sequence:
     the tank; the carrier's, which responds to that load; every phase of `between`, in which matters note how the tank
     will move; the carrier's frame; every phase of `after`, in which matters move. A matter whose steps are longer
     (`Phase.every`) computes its forces in the first of a few steps and moves in the last one, once it is known how the
-    tank has moved through all of them; its load stands in between (`Load`).
-    A step is a `multiple` of the base step, which changes only when all lists are rebuilt, to the least that any
-    matter or the carrier allows (`pace`), and never overshoots the target. Since a quiet world seldom rebuilds its
-    lists, it is checked every CHECK_EVERY base steps whether it may take longer ones. What a matter must offer is in
-    `solvers.tank.matter`.
+    tank has moved through all of them; its load stands in between (`Load`). A step is a `multiple` of the base step,
+    which changes only when all lists are rebuilt, to the least that any matter or the carrier allows
+    (`allowed_multiple`), and never overshoots the target. Since a quiet world seldom rebuilds its lists, it is checked
+    every CHECK_EVERY base steps whether it may take longer ones. What a matter must offer is in `solvers.tank.matter`.
     """
 
     def __init__(self, matters: Several, carrier):
@@ -31,7 +30,9 @@ class Sequence:
         self.before: tuple[Phase, ...] = (*pushing, *carrier.phases, *(p for m in matters for p in m.between))
         self.after: tuple[Phase, ...] = tuple(phase for matter in matters for phase in matter.after)
         alike = all(phase.every == 1 for phase in (*self.before, *self.after))
-        self.paced = alike and carrier.paced and all(matter.paced for matter in matters)  # may any step be longer
+        self.has_multiples = (
+            alike and carrier.has_multiples and all(matter.has_multiples for matter in matters)
+        )  # may any step be longer
 
     @property
     def exchange_interval(self) -> int:
@@ -62,7 +63,7 @@ class Sequence:
 
         A short one is a power of two that divides `step`, so that it does not depend on where a run is looked at.
         """
-        multiple = ti.min(left, self.pace(w))
+        multiple = ti.min(left, self.allowed_multiple(w))
         if multiple < CHECK_EVERY:
             longest, multiple = multiple, 1
             while 2 * multiple <= longest and step % (2 * multiple) == 0:
@@ -73,7 +74,7 @@ class Sequence:
     def may_lengthen(self, w, step, left, multiple):
         """Whether a world takes shorter steps than it may; checked every CHECK_EVERY base steps."""
         found = False
-        if ti.static(self.paced):  # noqa: SIM102 (compiled only where steps may be longer)
+        if ti.static(self.has_multiples):  # noqa: SIM102 (compiled only where steps may be longer)
             if step % CHECK_EVERY == 0 and left > 0:
                 found = self.multiple(w, step, left) > multiple
         return found
@@ -81,31 +82,31 @@ class Sequence:
     @ti.func
     def must_shorten(self, w, multiple):
         """Whether a world takes longer steps than it may now; checked when its lists are."""
-        return multiple > self.pace(w)
+        return multiple > self.allowed_multiple(w)
 
     @ti.func
-    def pace(self, w):
+    def allowed_multiple(self, w):
         """The largest multiple of a world: the least that any matter or the carrier allows."""
-        allowed = self.carrier.pace(w)
+        allowed = self.carrier.allowed_multiple(w)
         for k in ti.static(range(len(self.matters))):
-            allowed = ti.min(allowed, self.matters[k].pace(w))
+            allowed = ti.min(allowed, self.matters[k].allowed_multiple(w))
         return allowed
 
     @ti.func
-    def stale(self, u, t):
+    def invalid(self, u, t):
         """Whether a unit's lists, of any matter, must be rebuilt at time t (s)."""
         found = False
         for k in ti.static(range(len(self.matters))):
-            if self.matters[k].stale(u, t):
+            if self.matters[k].invalid(u, t):
                 found = True
         return found
 
     @ti.func
-    def worn(self, u, t):
+    def may_be_invalid(self, u, t):
         """Whether a unit's lists may be stale at time t (s), by cheap upper bounds on the displacements."""
         found = False
         for k in ti.static(range(len(self.matters))):
-            if self.matters[k].worn(u, t):
+            if self.matters[k].may_be_invalid(u, t):
                 found = True
         return found
 

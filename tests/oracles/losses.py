@@ -37,9 +37,11 @@ class CountedLaws(ChosenLaws):
         dt,
     ):
         before = self.sprung(kind, contacts, u, block)
-        pressing = self.press(kind, contacts, u, block, approach, rate, dt)
+        pressing = self.normal_force(kind, contacts, u, block, approach, rate, dt)
         overlap = greater(approach, 0.0)
-        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, way, dt)
+        shearing, torque = self.tangential_force(
+            kind, contacts, u, block, overlap, rate, pressing, slip, turning, way, dt
+        )
         elastic = contacts.stiffness[u, block] * overlap * ti.sqrt(overlap)
         work = ((pressing - elastic) * rate - shearing[0] * slip[0]).sum() * dt
         self.lost[APART * u] = self.lost[APART * u] + work - self.sprung(kind, contacts, u, block) + before

@@ -13,17 +13,17 @@ from solvers.tank.matter import Matter
 class Weight(Matter):
     """A point of `mass` (kg) in every world, held at `place` (m) by a spring (N/m) in both directions and a `push` (N).
 
-    It acts every `pace` base steps, by Verlet's scheme.
+    It acts every `substeps` base steps, by Verlet's scheme.
     """
 
     name = "weight"
 
-    def __init__(self, scene, setting, mass: float, place, spring: float, push, every: int):
+    def __init__(self, scene, context, mass: float, place, spring: float, push, every: int):
         self.scene, self.mass, self.middle, self.spring, self.thrust = scene, mass, place, spring, push
-        self.units = setting.units(2)
-        own = setting.arrays.under("weight")
-        self.load = setting.load(own, self.units, every)
-        world = (Axis("world", setting.worlds),)
+        self.units = context.units(2)
+        own = context.arrays.under("weight")
+        self.load = context.load(own, self.units, every)
+        world = (Axis("world", context.worlds),)
         self.y, self.z, self.vy, self.vz, self.fy, self.fz = own.reals(world, "y", "z", "vy", "vz", "fy", "fz")
         self.before = (Phase(self.hold, every=every),)
         self.after = (Phase(self.move, every=every),)

@@ -32,20 +32,20 @@ class SoundSwitch:
     Units: p Pa, c m/s, ρ kg/m³.
     """
 
-    def __init__(self, arrays: State, particles: Particles, constants: Constants, scene, stretch: int):
+    def __init__(self, arrays: State, particles: Particles, constants: Constants, scene, largest_multiple: int):
         self.particles, self.constants = particles, constants
         self.soft, self.stiff = scene.fluid.water.softened, scene.fluid.water
         self.acts, self.now = self.soft is not self.stiff, self.soft
-        self.when, self.stretch = stiff_step(scene) if self.acts else NEVER, stretch
-        self.paced = self.acts and stretch > 1
-        if self.paced:
-            self.multiple = arrays.under("water").holding("multiple", np.array([stretch]), "number", ti.i32)
+        self.when, self.largest_multiple = stiff_step(scene) if self.acts else NEVER, largest_multiple
+        self.has_multiples = self.acts and largest_multiple > 1
+        if self.has_multiples:
+            self.multiple = arrays.under("water").holding("multiple", np.array([largest_multiple]), "number", ti.i32)
 
     @ti.func
-    def pace(self):
+    def allowed_multiple(self):
         """The largest multiple."""
         longest = 1
-        if ti.static(self.paced):
+        if ti.static(self.has_multiples):
             longest = self.multiple[0]
         return longest
 
@@ -58,8 +58,8 @@ class SoundSwitch:
         """Let the constants and the multiple be those of stiff or of soft air."""
         self.now = self.stiff if stiff else self.soft
         self.constants.become(self.now, gravity)
-        if self.paced:
-            self.multiple.fill(1 if stiff else self.stretch)
+        if self.has_multiples:
+            self.multiple.fill(1 if stiff else self.largest_multiple)
 
     def change(self, gravity: float) -> np.ndarray:
         """Make the air stiff; returns the energy (W,) J/m that it loses."""

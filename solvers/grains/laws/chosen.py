@@ -175,20 +175,22 @@ class ChosenLaws:
         m/s, `turning` ω_i − ω_j (ω_i at a wall) in rad/s, `way` as the laws take it. The torque acts on the first
         grain, and its opposite on the second.
         """
-        pressing = self.press(kind, contacts, u, block, approach, rate, dt)
+        pressing = self.normal_force(kind, contacts, u, block, approach, rate, dt)
         overlap = greater(approach, 0.0)
-        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, way, dt)
+        shearing, torque = self.tangential_force(
+            kind, contacts, u, block, overlap, rate, pressing, slip, turning, way, dt
+        )
         return pressing, shearing, torque
 
     @ti.func
-    def press(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, dt):
+    def normal_force(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, dt):
         """Normal forces (N) of a block of contacts; their memory is updated."""
         overlap = greater(approach, 0.0)
         coefficients = self.coefficients(0, u, kind, contacts, block)
         return self.normal.force(coefficients, contacts, u, block, approach, overlap, ti.sqrt(overlap), rate, dt)
 
     @ti.func
-    def rub(
+    def tangential_force(
         self,
         kind: ti.template(),
         contacts: ti.template(),
@@ -211,7 +213,7 @@ class ChosenLaws:
         return shearing, torque
 
     @ti.func
-    def pull(self, contacts: ti.template(), u, block, approach, rate, dt):
+    def cohesive_force(self, contacts: ti.template(), u, block, approach, rate, dt):
         """Cohesive forces (N) of a block of contacts with overlap `approach` (m; negative: a gap) and its rate (m/s).
 
         Memory is updated. To be called only if the scene is `cohesive`.

@@ -14,7 +14,7 @@ from solvers.grains.lists.boxes import Boxes
 from solvers.grains.lists.candidates import Candidates
 from solvers.grains.lists.contact_list import ContactList
 from solvers.grains.lists.skin import Skin
-from solvers.grains.lists.wear import NEVER, Wear
+from solvers.grains.lists.validity import NEVER, ListValidity
 from solvers.grains.state import GrainState
 from solvers.machine.state import State
 from solvers.machine.units import Units
@@ -32,7 +32,8 @@ ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
 class Neighbours:
     """The two contact lists of every unit, and when they are rebuilt.
 
-    Pairs are listed that may touch before the next rebuild, when two have neared each other by the `skin` (`Wear`).
+    Pairs are listed that may touch before the next rebuild, when two have neared each other by the `skin`
+    (`ListValidity`).
     """
 
     lanes = LANES
@@ -72,7 +73,7 @@ class Neighbours:
         boxes = Boxes(arrays, grains, self.cells) if skin.together else None
         if not units.single:
             self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across, boxes, reach)
-        self.wear = Wear(arrays, units, grains, walls, skin, boxes)
+        self.validity = ListValidity(arrays, units, grains, walls, skin, boxes)
 
     def forget(self) -> None:
         """Empty the lists with all contact history, after grains were placed somewhere else."""
@@ -86,7 +87,7 @@ class Neighbours:
         Others keep theirs: when lists are built decides on how long steps are, and on how sums are rounded.
         """
         worlds = range(self.units.worlds) if worlds is None else worlds
-        self.wear.expire(worlds)
+        self.validity.expire(worlds)
         if not self.units.single:
             self.candidates.forget(worlds)
 
@@ -101,14 +102,14 @@ class Neighbours:
             self.cells.sort_world(w)
 
     @ti.func
-    def worn(self, u, t):
+    def may_be_invalid(self, u, t):
         """Whether an unlisted contact is possible at time t (s) by bounds on what grains and parts have gone."""
-        return self.wear.worn(u, t)
+        return self.validity.may_be_invalid(u, t)
 
     @ti.func
-    def stale(self, u, t):
+    def invalid(self, u, t):
         """Whether a unit's lists must be rebuilt at time t (s)."""
-        return self.wear.stale(u, t)
+        return self.validity.invalid(u, t)
 
     @ti.func
     def list_pairs(self, g: ti.template(), c: ti.template(), u, dt) -> ti.i32:
@@ -242,7 +243,7 @@ class Neighbours:
         if fits:
             self.pairs.length[u], self.contacts.length[u] = pairs, contacts
             self.pairs.pad(u)
-            self.wear.begin(u, t)
+            self.validity.begin(u, t)
         else:
             self.put_back(u)
         return fits
@@ -255,4 +256,4 @@ class Neighbours:
         """
         self.pairs.put_back(u)
         self.contacts.put_back(u)
-        self.wear.travel[u] = NEVER
+        self.validity.displacement[u] = NEVER

@@ -60,4 +60,4 @@ def moved(scene) -> int:
 
 def work(scene) -> int:
     """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
-    return max(scene.worlds, sum(scene.worlds * matter.moved // matter.pace for matter in scene.matters))
+    return max(scene.worlds, sum(scene.worlds * matter.moved // matter.substeps for matter in scene.matters))

@@ -63,7 +63,7 @@ class PerBand:
             if worst != FINE:
                 if worst == STALE and u % self.bands == 0:
                     self.sequence.sort(w)
-                if ti.static(self.sequence.paced):  # noqa: SIM102 (compiled only where steps may be longer)
+                if ti.static(self.sequence.has_multiples):  # noqa: SIM102 (compiled only where steps may be longer)
                     if worst == STALE:
                         multiple = self.sequence.multiple(w, done, target - done)
                 meetings = self.meet(w, meetings)
@@ -106,7 +106,7 @@ class PerBand:
             t, worst = origin + done * base, FINE
             for u in range(start, start + self.bands):
                 worst = ti.max(worst, self.freshness(u, done, t, multiple, left))
-            if ti.static(self.sequence.paced):  # noqa: SIM102
+            if ti.static(self.sequence.has_multiples):  # noqa: SIM102
                 if worst == STALE:
                     multiple = self.sequence.multiple(w, done, left)
                     self.clock.multiple[w] = multiple
@@ -161,7 +161,7 @@ class PerBand:
     def multiple_of(self, w):
         """Present multiple of a world, in base steps."""
         multiple = 1
-        if ti.static(self.sequence.paced):
+        if ti.static(self.sequence.has_multiples):
             multiple = self.clock.multiple[w]
         return multiple
 
@@ -174,14 +174,14 @@ class PerBand:
         says = FINE
         if self.sequence.asked(u):
             says = ASKED
-        worn = self.sequence.worn(u, t)
-        if self.sequence.stale(u, t):
+        may_be_invalid = self.sequence.may_be_invalid(u, t)
+        if self.sequence.invalid(u, t):
             says = STALE
-        if ti.static(self.sequence.paced):
+        if ti.static(self.sequence.has_multiples):
             w = self.clock.world(u)
             if 0 < left < multiple or self.sequence.may_lengthen(w, done, left, multiple):
                 says = STALE
-            if worn:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
+            if may_be_invalid:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
                 if self.sequence.must_shorten(w, multiple):
                     says = STALE
         return says

@@ -55,7 +55,7 @@ class PerGrain:
 
     def choose_multiple(self, done: int, left: int) -> int:
         """How many base steps the next steps of all running worlds are long from `done` on, at most `left`."""
-        if self.sequence.paced:
+        if self.sequence.has_multiples:
             self.set_multiples(done, left)
         return int(self.clock.multiple.to_numpy()[self.clock.running()].min())
 

@@ -34,22 +34,22 @@ class PerWorld:
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             step = self.clock.step[w]
             t, fresh = origin + step * base, True
-            worn = self.sequence.worn(w, t)
-            stale = self.sequence.stale(w, t)
-            if ti.static(self.sequence.paced):
+            may_be_invalid = self.sequence.may_be_invalid(w, t)
+            invalid = self.sequence.invalid(w, t)
+            if ti.static(self.sequence.has_multiples):
                 left = target - step
                 if self.sequence.may_lengthen(w, step, left, self.clock.multiple[w]):
-                    stale = True
-                if worn and self.sequence.must_shorten(w, self.clock.multiple[w]):
-                    stale = True
-                if stale or self.clock.multiple[w] > left:
-                    stale, self.clock.multiple[w] = True, self.sequence.multiple(w, step, left)
+                    invalid = True
+                if may_be_invalid and self.sequence.must_shorten(w, self.clock.multiple[w]):
+                    invalid = True
+                if invalid or self.clock.multiple[w] > left:
+                    invalid, self.clock.multiple[w] = True, self.sequence.multiple(w, step, left)
                 multiple = self.clock.multiple[w]
             dt = ti.cast(multiple * base, self.real)
-            if stale or self.sequence.asked(w):
-                if stale:
+            if invalid or self.sequence.asked(w):
+                if invalid:
                     self.sequence.sort(w)
-                fresh = self.sequence.make_lists(w, t, dt, stale)
+                fresh = self.sequence.make_lists(w, t, dt, invalid)
                 if not fresh:
                     self.clock.status[w] = NO_ROOM
             while fresh:
@@ -59,8 +59,8 @@ class PerWorld:
                 self.clock.step[w], self.clock.before[w] = self.clock.step[w] + multiple, multiple
                 fresh = self.clock.step[w] + multiple <= target
                 now = origin + self.clock.step[w] * base
-                fresh = fresh and not self.sequence.worn(w, now) and not self.sequence.asked(w)
-                if ti.static(self.sequence.paced):
+                fresh = fresh and not self.sequence.may_be_invalid(w, now) and not self.sequence.asked(w)
+                if ti.static(self.sequence.has_multiples):
                     fresh = fresh and self.clock.step[w] % CHECK_EVERY != 0
                 if not sound:
                     self.clock.status[w], fresh = TOO_FAST, False

@@ -148,18 +148,18 @@ def test_grains_that_go_together_keep_their_lists_for_long(clouded):
     (run, position), skin = clouded, SKIN
     run.place(position)
     run.advance(1)
-    wear, sought, went = run.grains.lists.wear, {}, np.zeros(2)
+    validity, sought, went = run.grains.lists.validity, {}, np.zeros(2)
     for flight in range(1, 101):
         went += np.array([0.06, 0.08]) * skin
         for a, field in enumerate(run.grains.grains.place):
             whole = field.to_numpy()
             whole[0, : position.shape[1]] = position[0, :, a] + went[a]
             field.from_numpy(whole)
-        travel = wear.travel.to_numpy()
+        travel = validity.displacement.to_numpy()
         travel[0] += 0.1 * skin
-        wear.travel.from_numpy(travel)
+        validity.displacement.from_numpy(travel)
         run.advance(1)
-        if wear.travel.to_numpy()[0] < 0.01 * skin:
+        if validity.displacement.to_numpy()[0] < 0.01 * skin:
             sought[flight] = bool(run.grains.lists.candidates.renewed.to_numpy()[0])
     lasted = np.diff([0, *sought])
     assert len(lasted) > 3 and np.all(lasted >= 0.85 * ASTRAY[0] / 0.1) and np.all(lasted <= ASTRAY[0] / 0.1 + 1)
@@ -184,7 +184,7 @@ def test_lists_equal_brute_force_while_grains_fly(clouded):
             whole = field.to_numpy()
             whole[:, : position.shape[1]] = position[:, :, a]
             field.from_numpy(whole)
-        run.grains.lists.wear.expire(range(2))
+        run.grains.lists.validity.expire(range(2))
         run.advance(1)
         sought.append(run.grains.lists.candidates.renewed.to_numpy())
         for w in range(2):

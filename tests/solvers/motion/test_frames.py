@@ -26,9 +26,9 @@ def test_a_tank_held_at_an_angle_equals_a_turned_tank():
     beds = [np.random.default_rng(seed) for seed in (3, 4, 5)]
     radius = np.array([radii(40, 3e-3, 0.2, random) for random in beds])
     start = np.array([start_positions(sizes, outline, random) for sizes, random in zip(radius, beds, strict=True)])
-    setting = {"stiffness_scale": 1e-3, "tangential": "mindlin", "step": 1e-5}
-    in_frame = simulation(start, radius, outline, motions=[[Held(angle)]] * 3, **setting)
-    turned = simulation(start @ turn.T, radius, outline @ turn.T, **setting)
+    context = {"stiffness_scale": 1e-3, "tangential": "mindlin", "step": 1e-5}
+    in_frame = simulation(start, radius, outline, motions=[[Held(angle)]] * 3, **context)
+    turned = simulation(start @ turn.T, radius, outline @ turn.T, **context)
     # Rounding differs between the two and grows tenfold in 6 ms as the grains collide.
     for steps, nearness in ((3_000, 1e-12), (4_000, 1e-9)):
         in_frame.advance(steps)

@@ -54,8 +54,8 @@ def test_grains_in_a_tank_steered_along_a_sway_move_as_in_the_sway(run):
     rows, found = run.observe(), run.snapshot()
     run.restore(start)
     run.steer([STILL] * 3)
-    setting = {"motions": [[Sway(AMPLITUDE, FREQUENCY)]], "stiffness_scale": 1e-3, "step": run.dt}
-    other = simulation(start_places(), 3e-3, box(1.0, 0.2), material(friction=0.3), **setting)
+    context = {"motions": [[Sway(AMPLITUDE, FREQUENCY)]], "stiffness_scale": 1e-3, "step": run.dt}
+    other = simulation(start_places(), 3e-3, box(1.0, 0.2), material(friction=0.3), **context)
     other.advance(40 * steps)
     wanted, theirs = other.snapshot(), other.observe()
     other.close()

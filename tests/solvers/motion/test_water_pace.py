@@ -12,10 +12,10 @@ from tests.solvers.motion.test_water_aboard import aboard, momentum, ship
 PACE, LASTS, EVERY = 8, 1.5, 0.02  # s
 
 
-def paced(step: float, pace: int) -> Simulation:
+def paced(step: float, substeps: int) -> Simulation:
     """A barge with water whose steps are `pace` of hers of `step` (s)."""
     made = aboard(ship())
-    return Simulation(made.holding(replace(made.fluid, pace=pace), step=step), threads=1, arch="cpu")
+    return Simulation(made.holding(replace(made.fluid, substeps=substeps), step=step), threads=1, arch="cpu")
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +52,8 @@ def test_ship_and_water_on_steps_of_their_own():
     """
     step = aboard(ship()).step / PACE
     rolls = []
-    for pace in (PACE, 1):
-        one, found = paced(step, pace), []
+    for substeps in (PACE, 1):
+        one, found = paced(step, substeps), []
         a_look = one.whole(round(EVERY / one.dt))
         a_look -= a_look % PACE
         for _ in range(round(LASTS / (a_look * step))):

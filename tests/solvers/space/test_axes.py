@@ -22,8 +22,8 @@ def told(integrator):
     random = np.random.default_rng(7)
     radius, velocity = radii(COUNT, 3e-3, 0.2, random), random.normal(0.0, 0.3, (COUNT, 2))
     place, spin = start_positions(radius, FLAT, random), random.normal(0.0, 100.0, COUNT)
-    setting = {"stiffness_scale": 1e-3, "tangential": "mindlin", "spin": spin, "integrator": integrator}
-    setting |= {"start_speed": float(np.abs(velocity).max())}
+    context = {"stiffness_scale": 1e-3, "tangential": "mindlin", "spin": spin, "integrator": integrator}
+    context |= {"start_speed": float(np.abs(velocity).max())}
     found = []
     for turn, angle in ((np.eye(2), 0.0), (QUARTER, -0.5 * pi)):  # one by one, so that they share kernels
         run = simulation(
@@ -32,9 +32,9 @@ def told(integrator):
             FLAT @ turn.T,
             velocity=velocity @ turn.T,
             motions=[[Held(angle), ROLL]],
-            **setting,
+            **context,
         )
-        setting["step"] = run.dt
+        context["step"] = run.dt
         run.advance(round(TIME / run.dt))
         found.append((run.snapshot(), run.observe(), pressing(run)))
         run.close()

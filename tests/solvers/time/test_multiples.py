@@ -14,7 +14,7 @@ SKIN = 1.5e-4  # m: one that follows the speed goes by the base step, too
 SLOW = pytest.mark.slow  # of schedules that another one stands for in the quick tests
 
 
-def started(base: float, stretch: int, schedule: str) -> Simulation:
+def started(base: float, largest_multiple: int, schedule: str) -> Simulation:
     """Thirty grains above one another's gaps in a swayed box."""
     rng = np.random.default_rng(5)
     sites = RADIUS * np.array([(2.4 * k - 6.0, 1.2 + 2.4 * row) for row in range(5) for k in range(6)])
@@ -32,7 +32,7 @@ def started(base: float, stretch: int, schedule: str) -> Simulation:
         start_speed=1.0,
     )
     units = 2 if schedule == "per-band" else None
-    return Simulation(scene, place, 1, skin=SKIN, arch="cpu", units=units, stretch=stretch)
+    return Simulation(scene, place, 1, skin=SKIN, arch="cpu", units=units, largest_multiple=largest_multiple)
 
 
 @pytest.fixture
@@ -47,11 +47,11 @@ def calm(monkeypatch):
 def test_steps_of_several_base_steps_are_steps_of_that_length(schedule):
     """Bit for bit, through falls, collisions and neighbour-list rebuilds."""
     found = []
-    for base, stretch in ((BASE, STRETCH), (STRETCH * BASE, 1)):
-        run = started(base, stretch, schedule)
+    for base, largest_multiple in ((BASE, STRETCH), (STRETCH * BASE, 1)):
+        run = started(base, largest_multiple, schedule)
         looks = []
         for _ in range(4):
-            run.advance(stretch * 1250)
+            run.advance(largest_multiple * 1250)
             looks.append({**run.snapshot(), **run.observe()})
         assert run.time == pytest.approx(0.08)
         run.close()
@@ -70,7 +70,7 @@ def test_free_fall_is_exact_where_the_step_changes(schedule):
     place = np.array([[[0.0, 0.3], [0.005, 0.3]]])
     given = {"schedule": schedule, "step": 1e-5, "start_speed": 1.0, "tangential": "none"}
     scene = scene_of(np.full((1, 2), RADIUS), box(0.1, 0.6), SOFT, SOFT, **given)
-    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=4)
+    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, largest_multiple=4)
     done = 0
     for steps in (7, 1, 2, 13, 4, 3, 5000, 9):  # the last steps to each are shorter ones
         run.advance(steps)
@@ -85,7 +85,7 @@ def test_steps_are_longer_while_grains_are_slow(schedule):
     """Two grains may meet at twice the speed of the faster one; a quarter more is kept in hand."""
     place = np.array([[[0.02 * k, RADIUS] for k in range(-2, 2)]])
     scene = scene_of(np.full((1, 4), RADIUS), box(0.1, 0.2), SOFT, SOFT, schedule=schedule, start_speed=2.0)
-    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=2)
+    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, largest_multiple=2)
     (fastest,) = run.grains.calm.to_numpy()  # closing speed up to which the multiple is 2
 
     def multiple(speed: float) -> int:

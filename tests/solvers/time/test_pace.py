@@ -31,8 +31,8 @@ class Hung(Given):
 def two_matters(monkeypatch, every: int, push=(0.0, 0.0), spring=SPRING, schedule="per-world", vessels=()):
     """A simulation of two grains on the floor and a weight that acts `every` few steps."""
 
-    def make_weight(scene, setting):
-        return Weight(scene, setting, MASS, MIDDLE, spring, push, every)
+    def make_weight(scene, context):
+        return Weight(scene, context, MASS, MIDDLE, spring, push, every)
 
     monkeypatch.setitem(MATTERS, Hung, (lambda scene, closing: [], (make_weight,)))
     grain = material(young=5e7)

@@ -41,8 +41,8 @@ THREADS = {"bands that grew": (2, 2), "single grains, settled and spilled": (1, 
 
 def made(case: str, threads: int) -> Simulation:
     """A swayed and rolled box with a gate that opens; grains in a stack beside it."""
-    setting = dict(CASES[case])
-    worlds = setting.pop("worlds")
+    context = dict(CASES[case])
+    worlds = context.pop("worlds")
     rng = np.random.default_rng(3)
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(5), np.arange(6), indexing="ij"))
     place = RADIUS * np.stack([2.1 * column - 6.0, 2.1 * row + 1.2], axis=1)
@@ -55,7 +55,7 @@ def made(case: str, threads: int) -> Simulation:
         parts=(GATE,),
         step=2e-5,
         sizes=(0.8 * RADIUS, RADIUS),
-        **setting,
+        **context,
     )
     return Simulation(scene, place, threads, arch="cpu")
 

@@ -92,7 +92,7 @@ def study_slow(page: Page, work: Path, fast: bool) -> None:
     """Add the section on slow tilts to the page: whether the codes' shifts differ by more than chance."""
     how = Tilting(2, 100, 0.06, 100.0, 26.0) if fast else Tilting(12, 150, 0.06, 5.0, 26.0)
     page.section("Slow tilts beside other codes")
-    codes = {**followers(), DOUBLED: partial(followed_here, stretch=2)}
+    codes = {**followers(), DOUBLED: partial(followed_here, largest_multiple=2)}
     beds = [settled_bed(work, how.count, how.width, seed) for seed in range(1, how.beds + 1)]
     found = all_kept(work, codes, how, beds)
     page.say(f"""As above, but {how.beds} beds of {how.count} grains in a tank {1e3 * how.width:g} mm wide, tilted at
@@ -136,12 +136,12 @@ def all_kept(work: Path, codes: Mapping[str, Callable], how: Tilting, beds: list
     }
 
 
-def followed_here(how: Tilting, bed: Bed, stretch: int = 1) -> Curve:
-    """The lab's curve; while grains are slow its steps may be `stretch` times as long."""
+def followed_here(how: Tilting, bed: Bed, largest_multiple: int = 1) -> Curve:
+    """The lab's curve; while grains are slow its steps may be `largest_multiple` times as long."""
     # On beyond the angle, so that the rate is not eased out before it.
     tilt = Tilt(np.radians(how.rate), np.radians(how.angle + how.rate * Tilt.ease))
     scene = bed.scene(material=GRAINS, schedule="per-world", motions=[(tilt,)])
-    run = Simulation(scene, bed.places(), threads=1, arch="cpu", stretch=stretch)
+    run = Simulation(scene, bed.places(), threads=1, arch="cpu", largest_multiple=largest_multiple)
     angle, centre = [], []
     duration = how.angle / how.rate + 0.5 * Tilt.ease
     for _ in range(1 + round(duration * how.rate / EVERY)):

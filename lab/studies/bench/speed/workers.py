@@ -17,7 +17,8 @@ Speeds = dict[Hashable, np.ndarray]
 class Worker(Aside):
     """A simulation of a bed in as many equal worlds, in a process of its own.
 
-    `how` goes to the scene; `arch`, `threads` and `stretch` to the simulation, whose motions began `origin` (s) ago.
+    `how` goes to the scene; `arch`, `threads` and `largest_multiple` to the simulation, whose motions began `origin`
+    (s) ago.
     """
 
     def __init__(
@@ -26,11 +27,11 @@ class Worker(Aside):
         threads: int = 1,
         worlds: int = 1,
         arch: str = "cpu",
-        stretch: int = 1,
+        largest_multiple: int = 1,
         origin: float = 0.0,
         **how: object,
     ):
-        super().__init__(_Timed, bed, threads, worlds, arch, stretch, origin, how)
+        super().__init__(_Timed, bed, threads, worlds, arch, largest_multiple, origin, how)
         self.dt = self.ask("step")
 
     def speed(self, seconds: float) -> float:
@@ -48,9 +49,13 @@ class Worker(Aside):
 class _Timed:
     """The simulation in the process of a worker."""
 
-    def __init__(self, bed: Bed, threads: int, worlds: int, arch: str, stretch: int, origin: float, how: Mapping):
+    def __init__(
+        self, bed: Bed, threads: int, worlds: int, arch: str, largest_multiple: int, origin: float, how: Mapping
+    ):
         self.places = bed.places(worlds)
-        self.run = Simulation(bed.scene(worlds, **how), self.places, threads, arch=arch, stretch=stretch)
+        self.run = Simulation(
+            bed.scene(worlds, **how), self.places, threads, arch=arch, largest_multiple=largest_multiple
+        )
         self.origin = self.run.origin = origin
         self.last = self.warmed()
 

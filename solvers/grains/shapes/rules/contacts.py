@@ -108,19 +108,21 @@ class ShapedContacts(Contacts):
         ly, lz = py + back * overlap * ny, pz + back * overlap * nz
         uy, uz, turning = self.passing(g, pairs, i, j, ly, lz, apart_y, apart_z)
         rate = minus(uy * ny + uz * nz)
-        pressing = self.laws.press(PAIR, pairs, u, block, approach, rate, dt)
+        pressing = self.laws.normal_force(PAIR, pairs, u, block, approach, rate, dt)
         fy, fz, torque = pressing * ny, pressing * nz, pressing * (ly * nz - lz * ny)
         if ti.static(self.rule.bent):
             shallow, my, mz, qy, qz = self.rest.present(self.rest.saddle_now, u)
             if shallow[0] > 0.0 and overlap[0] > 0.0:
                 ky, kz = qy + back * shallow * my, qz + back * shallow * mz
                 vy, vz, _ = self.passing(g, pairs, i, j, ky, kz, apart_y, apart_z)
-                less = self.laws.press(PAIR, pairs, u, block, shallow, -(vy * my + vz * mz), dt)
+                less = self.laws.normal_force(PAIR, pairs, u, block, shallow, -(vy * my + vz * mz), dt)
                 fy, fz, torque = fy - less * my, fz - less * mz, torque - less * (ky * mz - kz * my)
                 pressing -= less
         slip = uz * ny - uy * nz
         bearing = greater(pressing, 0.0)
-        shear, roll = self.laws.rub(PAIR, pairs, u, block, overlap, rate, bearing, [slip], [turning], None, dt)
+        shear, roll = self.laws.tangential_force(
+            PAIR, pairs, u, block, overlap, rate, bearing, [slip], [turning], None, dt
+        )
         ft = shear[0]
         fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll[0]
         self.push_block(g, pairs, i, u, block, fy, fz, torque, minus(torque) - (apart_y * fz - apart_z * fy), load)
@@ -163,14 +165,16 @@ class ShapedContacts(Contacts):
         """Closing speed and slip (m/s) and normal force (N) of a contact with a relative velocity (m/s)."""
         n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
         approach, rate = ti.Vector([c[OVERLAP]]), -velocity.dot(n)
-        return rate, n.cross(velocity), self.laws.press(kind, contacts, u, p, approach, ti.Vector([rate]), dt)[0]
+        return rate, n.cross(velocity), self.laws.normal_force(kind, contacts, u, p, approach, ti.Vector([rate]), dt)[0]
 
     @ti.func
     def rubbed(self, kind: ti.template(), contacts: ti.template(), u, p, c, rate, pressing, slip, turning, dt):
         """Tangential force (N) and rolling torque (N m) of a contact."""
         overlap, bearing = ti.Vector([greater(c[OVERLAP], 0.0)]), ti.Vector([greater(pressing, 0.0)])
         slips, spins = [ti.Vector([slip])], [ti.Vector([turning])]
-        ft, roll = self.laws.rub(kind, contacts, u, p, overlap, ti.Vector([rate]), bearing, slips, spins, None, dt)
+        ft, roll = self.laws.tangential_force(
+            kind, contacts, u, p, overlap, ti.Vector([rate]), bearing, slips, spins, None, dt
+        )
         return ft[0][0], roll[0][0]
 
     @ti.func

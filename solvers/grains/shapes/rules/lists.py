@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.lists.neighbours import Neighbours
-from solvers.grains.lists.wear import NEVER
+from solvers.grains.lists.validity import NEVER
 from solvers.grains.shapes.rules.rest import STILL
 from solvers.grains.shapes.support import Support
 from solvers.machine.wide import enter
@@ -86,7 +86,7 @@ class ShapedNeighbours(Neighbours):
                 fits = self.replace(self.contacts, u, p, i, feature, count, whole) and fits
         self.asking[u] = 0
         if not fits:
-            self.wear.travel[u] = NEVER
+            self.validity.displacement[u] = NEVER
             if whole:
                 self.put_back(u)
         elif whole and ti.static(self.rule.most > 1):
@@ -195,7 +195,7 @@ class ShapedNeighbours(Neighbours):
         """Have the contacts of p's pair searched for again before the next step."""
         enter(contacts.wanted, u, self.head(contacts, u, p), 0, 1.0)
         if ti.static(self.units.single):
-            self.wear.travel[u] = NEVER
+            self.validity.displacement[u] = NEVER
         else:
             self.asking[u] = 1
 

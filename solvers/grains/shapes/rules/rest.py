@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.grains.contacts import gathered
 from solvers.grains.lists.neighbours import LANES
-from solvers.grains.lists.wear import NEVER
+from solvers.grains.lists.validity import NEVER
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.machine.wide import enter, entry, size

@@ -83,8 +83,14 @@ def timed(one: Situation, rule: str, dts: Mapping[str, float], turns: int, cours
     `course` may be a function of the step. Where all take the SAME step the lab's never double.
     """
     timings = peers_on(one, dts, course)
-    stretch = 1 if rule == SAME else LONGEST_STRIDE
-    how = {"material": GRAINS, "schedule": "per-world", "stretch": stretch, "origin": one.since, **one.scene}
+    largest_multiple = 1 if rule == SAME else LONGEST_STRIDE
+    how = {
+        "material": GRAINS,
+        "schedule": "per-world",
+        "largest_multiple": largest_multiple,
+        "origin": one.since,
+        **one.scene,
+    }
     ours = {LAB: {"step": dts[LAB]}, MIXED: {"step": dts[LAB], "precision": "mixed"}}
     if rule != SAME:
         ours[LONGEST] = {"step": dts[LONGEST]}

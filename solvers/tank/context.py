@@ -1,4 +1,4 @@
-"""What a matter is made in: the tank, the carrier that moves it, and the settings of lists and steps."""
+"""The context that a matter is made in: the tank, the carrier that moves it, and the settings of lists and steps."""
 
 from dataclasses import dataclass
 
@@ -12,16 +12,15 @@ from solvers.tank.walls import Walls
 
 
 @dataclass(frozen=True)
-class Setting:
+class Context:
     """The arrays of a simulation of W `worlds` of so many `axes`, its tanks' walls, the `parts` in them, the `carrier`.
 
-    A world is cut into `bands`, or with `per_particle` into single particles. `pieces` things bear loads; `shares`
-    (W, pieces) are the factors with which the carrier responds to the load on each (`Load`). Lists of grains have the
+    A world is cut into `bands`, or with `per_particle` into single particles. `pieces` things bear loads; `shares` (W,
+    pieces) are the factors with which the carrier responds to the load on each (`Load`). Lists of grains have the
     `skin` (m), if one is given. All lists have `room` times the usual length, and what is usual of water is shared
-    `among` so many worlds. Steps are up to `stretch` base steps long. `vectors`: lanes of a block of pairs of grains on
-    real vectors, 0 without these.
-    `wide`: whether all matters made before are on real vectors. Kernels hold all matters, and one that is on real
-    vectors can hold no scalars of particles: Taichi then aborts.
+    `among` so many worlds. Steps are up to `largest_multiple` base steps long. `vectors`: lanes of a block of pairs of
+    grains on real vectors, 0 without these. `wide`: whether all matters made before are on real vectors. Kernels hold
+    all matters, and one that is on real vectors can hold no scalars of particles: Taichi then aborts.
     """
 
     arrays: State
@@ -36,7 +35,7 @@ class Setting:
     carrier: object
     skin: float | None
     room: int = 1
-    stretch: int = 1
+    largest_multiple: int = 1
     vectors: int = 0
     among: int = 0
     wide: bool = True

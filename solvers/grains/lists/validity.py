@@ -1,4 +1,5 @@
-"""The wear of Verlet lists: whether grains may have come into reach of each other, or of a wall, that are not listed.
+"""The validity of Verlet lists, a displacement criterion: whether grains may have come into reach of each other, or of
+a wall, that are not listed.
 
 Neighbours in a bed that flows or is swayed go together: they near each other by a third of what one must fear who knows
 the fastest grain alone. So grains are compared with those in neighbouring cells, by `Boxes` round displacements. Two
@@ -19,17 +20,17 @@ from solvers.machine.units import Units
 from solvers.space.axes import dot, named
 from solvers.tank.walls import Walls
 
-NEVER = 1e30  # m, a displacement that makes the lists stale
+NEVER = 1e30  # m, a displacement that makes the lists invalid
 # Of what lists bear: with less of it left they are built anew rather than looked at again, with boxes and without
 LITTLE = {True: 0.15, False: 0.4}
 
 
 @ti.data_oriented
-class Wear:
+class ListValidity:
     """How far grains have gone since a unit's lists were built at `built_at` (s), and how far they may.
 
-    `travel` (m) bounds the displacement of all grains; once it is above `bound` (m), or where parts move the time is
-    past `due` (s), it must be looked at closer.
+    `displacement` (m) bounds that of all grains; once it is above the `allowed` one (m), or where parts move the time
+    is past `check_at` (s), it must be looked at closer.
     """
 
     def __init__(self, arrays: State, units: Units, grains: GrainState, walls: Walls, skin: Skin, boxes: Boxes | None):
@@ -40,19 +41,19 @@ class Wear:
         self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
         if grains.shaped:
             (self.built_angle,) = own.reals(place, "built_angle")
-        self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
-        self.bound = own.holding("bound", np.zeros(units.count), "unit", kept=True)
+        self.displacement = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
+        self.allowed = own.holding("bound", np.zeros(units.count), "unit", kept=True)
         self.built_at = own.holding("built_at", np.zeros(units.count), "unit", own.exact, kept=True)
         if walls.moving:
-            self.due = own.holding("due", np.zeros(units.count), "unit", own.exact, kept=True)
+            self.check_at = own.holding("due", np.zeros(units.count), "unit", own.exact, kept=True)
             self.fastest = own.holding("fastest_part", np.array([walls.fastest]), "one", own.exact)
 
     def expire(self, worlds: Iterable[int]) -> None:
         """Have the lists of some worlds rebuilt before the next step."""
-        travel, a_world = self.travel.to_numpy(), self.units.a_world
+        travel, a_world = self.displacement.to_numpy(), self.units.a_world
         for w in worlds:
             travel[w * a_world : (w + 1) * a_world] = NEVER
-        self.travel.from_numpy(travel)
+        self.displacement.from_numpy(travel)
 
     @ti.func
     def begin(self, u, t):
@@ -63,31 +64,31 @@ class Wear:
                 self.built[a][w, i] = self.grains.place[a][w, i]
             if ti.static(self.grains.shaped):
                 self.built_angle[w, i] = self.grains.angle[0][w, i]
-        self.travel[u], self.built_at[u] = 0.0, t
+        self.displacement[u], self.built_at[u] = 0.0, t
         self.look_again(u, t, 0.0, 0.0, 0.0)
 
     @ti.func
-    def worn(self, u, t):
+    def may_be_invalid(self, u, t):
         """Whether an unlisted contact is possible at time t (s) by bounds on what grains and parts have gone."""
-        found = self.travel[u] > self.bound[u]
+        found = self.displacement[u] > self.allowed[u]
         if ti.static(self.walls.moving):
-            found = found or t > self.due[u]
+            found = found or t > self.check_at[u]
         return found
 
     @ti.func
-    def stale(self, u, t):
+    def invalid(self, u, t):
         """Whether a unit's lists must be rebuilt at time t (s); if only a bound was too large, it is updated."""
         old = False
-        if self.worn(u, t):
-            old = self.travel[u] >= 0.5 * NEVER
+        if self.may_be_invalid(u, t):
+            old = self.displacement[u] >= 0.5 * NEVER
             if not old:
                 w = self.units.world(u)
-                moved, nearing, gone = self.travel[u], 0.0 * self.travel[u], 0.0 * self.travel[u]
-                if moved > self.bound[u]:
+                moved, nearing, gone = self.displacement[u], 0.0 * self.displacement[u], 0.0 * self.displacement[u]
+                if moved > self.allowed[u]:
                     # The running sum of speeds overestimates the displacement of shaken grains; use the actual one.
                     moved, nearing = self.moves(u)
                 else:
-                    nearing = self.skin.width[w] - 2.0 * (self.bound[u] - moved)
+                    nearing = self.skin.width[w] - 2.0 * (self.allowed[u] - moved)
                 if ti.static(self.walls.moving):
                     gone = self.walls.moved.gone(w, self.built_at[u], t)
                 old = not self.look_again(u, t, moved, nearing, gone)
@@ -102,11 +103,11 @@ class Wear:
         skin = self.skin.width[self.units.world(u)]
         left = ti.min(self.skin.astray * skin - moved, 0.5 * (skin - nearing))
         enough = left > self.little * 0.5 * skin
-        self.travel[u], self.bound[u] = moved, moved + left
+        self.displacement[u], self.allowed[u] = moved, moved + left
         if ti.static(self.walls.moving):
             left = self.skin.parts * skin - gone
             enough = enough and left > self.little * self.skin.parts * skin
-            self.due[u] = t + ti.cast(left, self.grains.exact) / self.fastest[0]
+            self.check_at[u] = t + ti.cast(left, self.grains.exact) / self.fastest[0]
         return enough
 
     @ti.func
