@@ -228,7 +228,7 @@ class Contacts:
         return ti.Vector(place + [force * n[a] for a in ti.static(range(g.axes))] + [overlap])
 
     @ti.func
-    def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
+    def diagnostics(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
         """Number of touching contacts of a unit, largest overlap in radii of the smaller grain, and energy (J).
 
         The energy is elastic energy plus that of liquid bridges. A pair across two units counts half in each.

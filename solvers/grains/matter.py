@@ -5,9 +5,9 @@ from typing import ClassVar
 import numpy as np
 import taichi as ti
 
-from solvers.grains.census import Census
 from solvers.grains.checks import FASTEST_STEP, check_state, refuse_speed
 from solvers.grains.contacts import Contacts
+from solvers.grains.diagnostics import Diagnostics
 from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.lists.numbering import Numbering
 from solvers.grains.mover import Mover
@@ -56,7 +56,7 @@ class GrainMatter(Matter):
         self.wide = lists.pairs.wide
         # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
         self.numbering = Numbering(arrays, grains, lists, 2.0 * given.mean_radius, given.shapes is None)
-        self.census = Census(arrays, units, grains, walls, lists, contacts, context.carrier)
+        self.diagnostics = Diagnostics(arrays, units, grains, walls, lists, contacts, context.carrier)
         self.presser = Presser(units, grains, walls, lists, contacts)
         own = arrays.under("grains")
         self.unseen = UNSEEN if own.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
@@ -165,7 +165,7 @@ class GrainMatter(Matter):
 
     def observe(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of every world at its time (s): (W, *shape) of each by name."""
-        return self.census.take(time)
+        return self.diagnostics.sums_at(time)
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""

@@ -1,4 +1,4 @@
-"""What is known of the grains: their sums (`census`), and each of them (`state`)."""
+"""What is known of the grains: their sums (`diagnostics`), and each of them (`state`)."""
 
 from solvers.machine.quantity import Quantity, directions, rotations
 

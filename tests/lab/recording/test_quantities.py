@@ -14,7 +14,7 @@ from lab.recording import open_recording
 from lab.recording.layout import STEERING, frames_of, series_of
 from lab.sweeps.dry_run import available_measures
 from solvers.grains import quantities as grains
-from solvers.grains.census import Census
+from solvers.grains.diagnostics import Diagnostics
 from solvers.machine.quantity import SPACE, Quantity, directions, freedoms, parted, places, rotations
 from tests.oracles.synthetic import frame, recorder, sample
 
@@ -29,12 +29,12 @@ HIGHEST = Quantity("highest", "m", label="height of the highest grain in the tan
 
 
 @ti.data_oriented
-class WithHighest(Census):
+class WithHighest(Diagnostics):
     """Fills one number more."""
 
     @ti.func
     def write_row(self, w, time, sums, contacts):
-        Census.write_row(self, w, time, sums, contacts)
+        Diagnostics.write_row(self, w, time, sums, contacts)
         self.rows[w, self.at.highest] = self.top(w)
 
     @ti.func
@@ -48,7 +48,7 @@ class WithHighest(Census):
 @pytest.mark.slow  # the recipe in docs/extending.md is run on every change
 def test_a_new_quantity_is_one_declaration_and_one_line_that_fills_it(tmp_path, monkeypatch):
     monkeypatch.setattr(grains, "SERIES", (*grains.SERIES, HIGHEST))
-    monkeypatch.setattr("solvers.grains.matter.Census", WithHighest)
+    monkeypatch.setattr("solvers.grains.matter.Diagnostics", WithHighest)
     result = lab.run("tilting/quick", tmp_path / "run", video=False, quiet=True, **TINY)
     with open_recording(result.folder) as found:
         place, times = found.frames["position"][:], found.frames["time"][:]

@@ -256,7 +256,7 @@ class ShapedContacts(Contacts):
         return force * ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
 
     @ti.func
-    def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
+    def diagnostics(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
         """Number of touching contacts of a unit, largest overlap in radii of the smaller grain, elastic energy (J)."""
         w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
         zero = ti.cast(0.0, g.exact)

@@ -1,4 +1,4 @@
-"""The census of the grains: sums over those of a world, taken in one order on any number of threads."""
+"""Diagnostics of the grains: sums over those of a world, taken in one order on any number of threads."""
 
 from types import SimpleNamespace
 
@@ -23,7 +23,7 @@ TOUCHING, DEEPEST, ELASTIC = range(3)
 
 
 @ti.data_oriented
-class Census:
+class Diagnostics:
     """One row of numbers per world, of the grains in the tank; spilled grains are only counted.
 
     `quantities` are the numbers' declarations, and `at` has the column in which each begins.
@@ -46,7 +46,7 @@ class Census:
         self.quantities = tuple(one.within(grains.axes) for one in (*quantities.SERIES, quantities.ESCAPED))
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
-        own, scratch = arrays.under("census"), {"kind": arrays.exact, "kept": False}
+        own, scratch = arrays.under("diagnostics"), {"kind": arrays.exact, "kept": False}
         world, chunk = Axis("world", grains.worlds), Axis("chunk", self.chunks)
         (self.rows,) = own.reals((world, Axis("quantity", columns)), "rows", **scratch)
         self.numbers = MOMENT + grains.axes
@@ -54,7 +54,7 @@ class Census:
         self.sums = own.reals((world, chunk), *sums, **scratch)
         self.counted = own.reals((units.axis,), "touching", "deepest", "elastic", **scratch)
 
-    def take(self, time: float) -> dict[str, np.ndarray]:
+    def sums_at(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of every world at `time` (s), which must be the grains' own: (W, *shape) of each by name."""
         self.count(time)
         return parted(self.rows.to_numpy().astype(float), self.quantities)
@@ -63,7 +63,7 @@ class Census:
     def count(self, time: ti.f64):
         """Fill the rows."""
         for u in range(self.units.count):
-            found = self.contacts.census(self.grains, self.lists.pairs, self.lists.contacts, u, time)
+            found = self.contacts.diagnostics(self.grains, self.lists.pairs, self.lists.contacts, u, time)
             for k in ti.static(range(3)):
                 self.counted[k][u] = found[k]
         for w, chunk in self.sums[0]:
