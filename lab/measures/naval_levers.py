@@ -34,7 +34,7 @@ def draw_levers(axes, ship: Judged, lying: Callable[[np.ndarray], np.ndarray] | 
         axes.axhline(
             wind.gust, color=GREEN, lw=1.0, ls=":", label=f"gust, {wind.gust:.3f} m (steady wind {wind.wind:.3f} m)"
         )
-    marks = {"deck edge": (ship.deck, "--"), "flooding": (ship.flooding, "-.")}
+    marks = {"deck edge": (ship.deck_edge_angle, "--"), "flooding": (ship.flooding, "-.")}
     for name, (angle, style) in marks.items():
         if angle is not None and np.degrees(angle) <= FURTHEST:
             axes.axvline(np.degrees(angle), color=GREY, lw=1.0, ls=style, label=f"{name} {np.degrees(angle):.1f} deg")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 
@@ -50,8 +50,6 @@ class Grains(Given):
     fixed: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     shapes: Annotated[Shapes | None, EachWorld(lambda grains: grains.shapes and grains.shapes.alike)] = None
     integrator: str = "verlet"
-    substeps: ClassVar = 1
-    soft_stride: ClassVar = 1
     interfaces_of: list[tuple[Interface, ...]] = field(init=False)  # per world, in the row order of `ChosenLaws`
 
     def __post_init__(self):

@@ -74,16 +74,17 @@ def test_steps_are_long_while_air_is_soft():
     """A power of two of the stiff air's steps, within the bounds of both, with the fewest steps in all."""
     late = airy(**REAL, air__stiff_from="0.75 s", run__precision="mixed")
     scene, stiff, soft = (build(preset)[0] for preset in (late, airy(**REAL), airy()))
-    assert scene.fluid.soft_stride in (16, 32)  # 343 over 9.9 m/s is 35
+    assert scene.fluid.soft_multiple in (16, 32)  # 343 over 9.9 m/s is 35
     assert (
-        scene.step <= stiff.step_limits()[0].step and scene.fluid.soft_stride * scene.step <= soft.step_limits()[0].step
+        scene.step <= stiff.step_limits()[0].step
+        and scene.fluid.soft_multiple * scene.step <= soft.step_limits()[0].step
     )
     rows = round(1.0 / late.record.series_rate / scene.step)
-    assert rows % scene.fluid.soft_stride == 0
+    assert rows % scene.fluid.soft_multiple == 0
     taken = updates(scene, round(1.0 / scene.step)) / scene.particles
     assert 1.0 / soft.step < taken < 0.36 / stiff.step
     forced = build(airy(**REAL, air__stiff_from="0.75 s", run__step=f"{1e6 * stiff.step} us"))[0]
-    assert forced.fluid.soft_stride == 1 and forced.step == pytest.approx(stiff.step)
+    assert forced.fluid.soft_multiple == 1 and forced.step == pytest.approx(stiff.step)
 
 
 def test_a_preset_with_air_comes_back_from_its_table():

@@ -18,7 +18,6 @@ from solvers.machine.errors import Unavailable
     [
         lambda folder: lab.run("tilting/quick", folder / "run", video=False, quiet=True),
         lambda folder: lab.sweep("tilting/quick", {"run.seed": "1:2:2"}, folder / "sweep", video=False, quiet=True),
-        lambda folder: lab.resume(folder / "none"),
     ],
 )
 def test_a_second_thread_is_told_in_a_sentence(act, tmp_path):

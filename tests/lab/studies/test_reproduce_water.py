@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator
 import lab
 from lab.base.errors import LabError
 from lab.preset.find import load
+from lab.recording.layout import names_of
 from lab.studies.reproduce import experiments
 from lab.studies.reproduce.claims import FOLDER, Source, spread
 from lab.studies.reproduce.compare import Claim
@@ -28,7 +29,9 @@ given = pytest.mark.skipif(measured.series(ROLL) is None, reason=f"{measured.FOL
 def ran(preset: str, changes: dict | None = None, **series: np.ndarray) -> Outcome:
     """A run with these series and frames."""
     frames = {name[7:]: series.pop(name) for name in [*series] if name.startswith("frames_")}
-    recording = SimpleNamespace(preset=load(preset, changes or {}).resolved, series=series, frames=frames, worlds=1)
+    resolved = load(preset, changes or {}).resolved
+    known = {"preset": resolved, "names": names_of(resolved)}
+    recording = SimpleNamespace(**known, series=series, frames=frames, worlds=1)
     recording.volume, recording.air_volume = np.zeros((1, 100)), np.zeros((1, 0))
     one = Outcome({}, None, "complete", {}, {"wall_s": 1.0, "grain_steps": 1e5})
     one.__dict__["recording"] = recording
