@@ -65,5 +65,7 @@ def test_grains_in_a_part_that_rolls_and_sways_move_as_in_such_a_tank(how):
     (place, velocity), (seen, seen_velocity) = states(True, **how), states(False, **how)
     still = np.linalg.norm(seen - STARTS[0], axis=1)
     assert still.min() > 0.5 * RADIUS  # all were carried along
-    np.testing.assert_allclose(place, seen, atol=2e-3 * RADIUS)
-    np.testing.assert_allclose(velocity, seen_velocity, atol=5e-3)
+    # By nodes a contact is followed until it has gone a hundredth of the way to the next: up to 1e-2 of a radius.
+    least = 1e-2 if getattr(how.get("shapes"), "contact", "") == "nodes" else 2e-3
+    np.testing.assert_allclose(place, seen, atol=least * RADIUS)
+    np.testing.assert_allclose(velocity, seen_velocity, atol=2.5 * least)  # m/s
