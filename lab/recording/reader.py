@@ -264,6 +264,7 @@ def _quantities(group: h5py.Group, known: tuple[Quantity, ...]) -> dict[str, Qua
     Raises ValueError or KeyError if a known one is missing or has another shape or data type.
     """
     found, stored = {}, older.stored(group)
+    known = tuple(quantity for quantity in known if quantity.name in stored or quantity.name not in older.ADDED)
     for name in (*(quantity.name for quantity in known), *stored):
         if name not in found:
             found[name] = described(group[stored.get(name, name)])

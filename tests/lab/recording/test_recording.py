@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lab.base.errors import LabError
-from lab.recording import BUFFER_BYTES, Recorder, open_recording, superblock
+from lab.recording import BUFFER_BYTES, Recorder, older, open_recording, superblock
 from tests.oracles.synthetic import frame, recorder, sample
 
 FRAMES = "3 times (record.picture_rate, run.duration) × 2 beds (run.repeats)"
@@ -398,3 +398,25 @@ def test_other_files_are_refused_in_one_sentence(tmp_path, make, complaint):
         open_recording(tmp_path)
     assert str(tmp_path) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_grains_recorded_before_parts_turned_are_read_and_gone_on_with(tmp_path):
+    """A recording of format 3 has no turn of parts: it opens without, and a frame of today's fits on it."""
+    with recorder(tmp_path) as run:
+        run.frame(frame(0.0))
+        run.sample(sample(0.0))
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        file.attrs["format"] = older.WITH_OTHER_NAMES
+        del file["frames/part_turn"]
+        checks = file["checks/frames"]
+        kept = [name != b"part_turn" for name in checks.attrs["columns"]]
+        attributes, rows = dict(checks.attrs), checks[:][:, kept]
+        del file["checks/frames"]
+        file.create_dataset("checks/frames", data=rows, maxshape=(None, rows.shape[1]), chunks=(1, rows.shape[1]))
+        file["checks/frames"].attrs.update(attributes | {"columns": attributes["columns"][kept]})
+    with open_recording(tmp_path) as found:
+        assert "part_turn" not in found.frames and found.frames["part"].shape == (1, 1, 0, 2)
+    with Recorder(tmp_path, samples=1, frames=1) as run:
+        run.frame(frame(0.5))
+    with open_recording(tmp_path) as found:
+        assert found.frames["time"][:].tolist() == [0.0, 0.5]
