@@ -120,14 +120,18 @@ class Scene:
 
     @property
     def shares(self) -> np.ndarray | None:
-        """Factors (W, pieces) from each piece's load to that which a carrier responds to; None if none does."""
+        """Factors (W, pieces) from each piece's load to that which the tanks' carrier responds to; None if none does.
+
+        They are zero where only parts respond, each to the load on itself.
+        """
         more = [part.tank for part in self.parts] + [0] * sum(matter.pieces for matter in self.matters)
-        return shares_of_loads(self.tanks, self.vessels, self.axles, more)
+        found = shares_of_loads(self.tanks, self.vessels, self.axles, more)
+        return np.zeros((self.worlds, self.pieces)) if found is None and self.responds else found
 
     @property
     def responds(self) -> bool:
-        """Whether the tanks' motion responds to the load of what is in them."""
-        return bool(self.vessels or self.axles)
+        """Whether the tanks, or parts in them, move as the load of what is in the tanks says."""
+        return bool(self.vessels or self.axles) or any(part.free for part in self.parts)
 
     @property
     def worlds(self) -> int:

@@ -14,6 +14,7 @@ from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
 from solvers.matters import context_of, made
 from solvers.motion.carrier import make_carrier
+from solvers.motion.free import FreeBodies
 from solvers.motion.moved import make_pieces
 from solvers.motion.sampler import Sampler
 from solvers.scene import Scene
@@ -82,13 +83,15 @@ class Simulation:
         self.parts = make_pieces(arrays, scene.parts, worlds)
         self.walls = Walls(arrays, scene.tanks, self.parts, scene.apart)
         self.carrier = make_carrier(arrays, scene, self.dt)
+        self.parts.join(FreeBodies(arrays, self.parts, self.carrier, len(scene.tanks)))
         context = context_of(self)
         matters = made(scene, context)
         self.matters = {matter.name: matter for matter in matters}
         loads = [matter.load for matter in matters]
         self.carrier.bear(loads)
+        self.parts.bodies.bear(loads)
         self.clock = Clock(arrays, context.units(max((matter.in_bands for matter in scene.matters), default=0)))
-        sequence = Sequence(matters, self.carrier)
+        sequence = Sequence(matters, self.carrier, self.parts)
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
         self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, loads)
@@ -108,6 +111,7 @@ class Simulation:
         self, position: np.ndarray | None, velocity: np.ndarray | None = None, spin: np.ndarray | None = None
     ) -> None:
         """Place the grains at `position` (W, n, 2) m without contact history, and the water; `launch` all matters."""
+        self.parts.bodies.hold_all()
         for matter in self.matters.values():
             matter.place(position)
         self.launch(velocity, spin)
@@ -211,7 +215,7 @@ class Simulation:
         still = ended | (self.observed == self.steps)
         for name, before in self.means.items():
             rows[name] = np.where(still.reshape(-1, *[1] * (before.ndim - 1)), before, rows[name])
-        rows |= self.carrier.account(rows)
+        rows |= self.carrier.account(rows) | self.parts.bodies.account(rows["pose"], self.scene.gravity)
         self.observed, self.means = self.steps, {name: rows[name] for name in self.means}
         for matter in self.matters.values():
             matter.check(rows, self.time)

@@ -76,6 +76,7 @@ class WaterMatter(Matter):
         tangential = TangentialCorrection(arrays, shared, layers, slots, scene.tanks)
         self.extrapolation = Extrapolation(arrays, shared, tangential)
         self.forces = Forces(arrays, shared, self.extrapolation, self.load, tank.thickness)
+        self.extrapolation.coupling.join(self.load, self.forces.thick)
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
         self.has_multiples = self.sound_switch.has_multiples
         self.continuity, self.vent = Continuity(arrays, shared, self.forces), OutflowVent(arrays, shared, water.air)
@@ -99,6 +100,7 @@ class WaterMatter(Matter):
             Phase(self.forces.update_state, self.units),
             *([Phase(self.vent.sum, self.units), Phase(self.vent.flow)] if self.vent.acts else ()),
             *([Phase(self.extrapolation.extrapolate, self.units)] if self.particles.wall_blocks else ()),
+            *([Phase(self.extrapolation.coupling.solve)] if self.bodies.floats else ()),
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
             Phase(self.forces.momentum_pass, self.units),
@@ -129,6 +131,8 @@ class WaterMatter(Matter):
     def note_passage(self, w, t, kick, dt):
         """Note how the tank moves through the step."""
         self.poses.note_passage(w, t, dt)
+        if ti.static(self.bodies.floats and self.extrapolation.sticks):
+            self.extrapolation.coupling.note_rest(w)
 
     @ti.func
     def finish(self, u, frame, kick, dt):
@@ -207,7 +211,7 @@ class WaterMatter(Matter):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
         self.lists.expire()
-        for noted in (self.bodies, self.gauges, self.edges, self.load, self.poses):
+        for noted in (self.bodies, self.gauges, self.edges, self.load, self.poses, self.extrapolation.coupling):
             noted.forget()
         self.start[:] = np.nan
 

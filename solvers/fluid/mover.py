@@ -122,6 +122,8 @@ class Mover:
         self.fastest[u], self.deviation[u] = 2.0 * second / dt, deviated
         if ti.static(c.two):
             self.fastest[u] = 2.0 * ti.sqrt(self.largest(paced)) / dt
+        if ti.static(self.bodies.floats):  # a body that is thrown about stops the run, too
+            self.fastest[u] = ti.max(self.fastest[u], self.bodies.way[w] / dt)
         if not tame.sum() < 1e30:  # largest values may pass over what is no number, sums do not
             self.deviation[u] = tame.sum()
         if ti.static(self.spills):

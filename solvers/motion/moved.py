@@ -51,7 +51,7 @@ def motions_of(part: Part) -> tuple:
 
 
 def make_pieces(arrays: State, parts: Sequence[Part], worlds: int) -> Pieces:
-    """The parts of a scene as pieces; one that never moves has no carrier."""
+    """The parts of a scene as pieces; one that never moves, or freely, has no carrier."""
     moves = [[motions_of(part)] * worlds for part in parts]
     carriers = [
         Prescribed(arrays.under(f"parts.{k}"), each, 0.0, 0.0) if each[0] else None for k, each in enumerate(moves)

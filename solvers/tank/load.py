@@ -139,6 +139,15 @@ class Load:
                 self.noted[k][u, piece] = 0.0
 
     @ti.func
+    def on_piece(self, w, piece):
+        """The present load of a world on a piece, summed over units in their order."""
+        load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(self.freedoms))])
+        for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
+            for k in ti.static(range(self.freedoms)):
+                load[k] += self.instant[k][u, piece]
+        return load
+
+    @ti.func
     def of_world(self, w):
         """The load that a world's carrier responds to, summed over units and pieces in their order."""
         load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(self.freedoms))])

@@ -47,6 +47,7 @@ class Part:
     closed: ClassVar = False
     motions: ClassVar = ()
     tank: ClassVar = 0
+    free: ClassVar = None
 
     @property
     def way(self) -> float:
@@ -72,16 +73,31 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Free:
+    """What a part that moves freely is: its `mass` (kg) and `inertia` (kg m²) about the `centre` of mass (m), as drawn.
+
+    Mass and inertia are those of the slab that the tank is thick. It is held until `release` (s).
+    """
+
+    mass: float
+    inertia: float
+    centre: tuple[float, float]
+    release: float = 0.0
+
+
+@dataclass(frozen=True)
 class Body(Part):
     """A part with motions of its own; in water a thin plate between two points or, if it is `closed`, a solid polygon.
 
     Its `motions` are those that a tank may have (`solvers.motion`), in the tank's frame, from the drawn place on; they
-    follow its `move`. They begin with the tank's own motion. `tank` is the number of the tank in which it stands.
+    follow its `move`. They begin with the tank's own motion. `tank` is the number of the tank in which it stands. One
+    that is `free` moves as what pushes it says; it has no motions.
     """
 
     closed: bool = False
     motions: tuple = ()
     tank: int = 0
+    free: Free | None = None
 
     def fastest(self) -> float:
         """Bound on the speed (m/s) of its corners."""

@@ -17,6 +17,9 @@ AT_START, AT_MIDDLE, AT_END = range(3)  # of a step
 class Pieces:
     """Rigid pieces, each moved in the tank's frame by a carrier of its own, or None: it stands where it is drawn.
 
+    Those that are free have their poses from the `bodies` (`solvers.motion.free`); grains, which
+    look at any time, meet none of them.
+
     At a pose (O, θ) a point that is drawn at p is at O + R(θ) p and moves at V + ω × R(θ) p. Matters that look at any
     time ask for the poses `at` it; `poses` (W, pieces, 21) are those of a step, `pull` the acceleration of the origin
     and of the turn (W, pieces) as it begins, `way` (W,) how far (m) any corner goes in it, once it is noted (`note`).
@@ -25,8 +28,13 @@ class Pieces:
     def __init__(self, arrays: State, parts: Sequence[Part], carriers: Sequence, worlds: int):
         self.parts, self.count, self.worlds = tuple(parts), len(parts), worlds
         self.carriers, self.real, self.exact = tuple(carriers), arrays.real, arrays.exact
-        self.moves = [carrier is not None for carrier in carriers]
-        self.turns = [carrier is not None and carrier.rotating for carrier in carriers]
+        self.free = [part.free is not None for part in parts]
+        self.driven = [carrier is not None for carrier in carriers]
+        self.moves = [free or driven for free, driven in zip(self.free, self.driven, strict=True)]
+        turning = (carrier is not None and carrier.rotating for carrier in carriers)
+        self.turns = [free or turns for free, turns in zip(self.free, turning, strict=True)]
+        self.floats = any(self.free)
+        self.bodies, self.phases, self.has_multiples = None, (), not self.floats
         self.moving, self.turning = any(self.moves), any(self.turns)
         self.fastest = max((part.fastest() for part in parts), default=0.0)  # m/s
         self.size = NUMBERS if self.turning else COSINE  # of a pose, as `at` tells it
@@ -43,6 +51,10 @@ class Pieces:
             drawn = np.array([points[np.minimum(np.arange(max(self.corners)), len(points) - 1)] for points in corners])
             self.drawn = own.holding("drawn", drawn, "part corner direction", own.exact)
 
+    def join(self, bodies) -> None:
+        """Take the free `bodies` among the pieces, which move once the loads of a step are known."""
+        self.bodies, self.phases = bodies, bodies.phases
+
     @ti.func
     def at(self, w, t):
         """The poses of all pieces at time t (s), one after the other, `size` numbers each."""
@@ -51,7 +63,7 @@ class Pieces:
             first = ti.static(self.size * k)
             if ti.static(self.turning):
                 found[first + COSINE] = 1.0
-            if ti.static(self.moves[k]):
+            if ti.static(self.driven[k]):
                 s = self.carriers[k].kinematics(w, t)
                 found[first + Y], found[first + Z] = ti.cast(s[0], self.real), ti.cast(s[1], self.real)
                 found[first + V_Y], found[first + V_Z] = ti.cast(s[3], self.real), ti.cast(s[4], self.real)
@@ -89,7 +101,7 @@ class Pieces:
             for part in range(3):
                 first = NUMBERS * part
                 self.poses[w, k, first + COSINE] = 1.0
-                if ti.static(self.moves[k]):
+                if ti.static(self.driven[k]):
                     s = self.carriers[k].kinematics(w, t + part * half)
                     self.poses[w, k, first + Y], self.poses[w, k, first + Z] = s[0], s[1]
                     self.poses[w, k, first + COSINE], self.poses[w, k, first + SINE] = ti.cos(s[2]), ti.sin(s[2])
@@ -101,6 +113,8 @@ class Pieces:
                         self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k] = s[6], s[7], s[8]
         if ti.static(self.count > 0):
             self.way[w] = ti.cast(farthest, self.real)
+        if ti.static(self.floats):
+            self.bodies.note_start(w, t, dt)
 
     @ti.kernel
     def note_at(self, time: ti.f64):

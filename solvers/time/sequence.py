@@ -12,11 +12,12 @@ CHECK_EVERY = 64  # base steps between two checks whether steps may be longer
 
 @ti.data_oriented
 class Sequence:
-    """The step that every schedule runs, for worlds that hold `matters` and are moved by a `carrier`.
+    """The step that every schedule runs, for worlds that hold `matters` and `pieces` and are moved by a `carrier`.
 
     A step of a world at time t (s) is: every phase of `before`, in which matters compute their forces and book those on
     the tank; the carrier's, which responds to that load; every phase of `between`, in which matters note how the tank
-    will move; the carrier's frame; every phase of `after`, in which matters move. A matter whose steps are longer
+    will move; those of the pieces that are free, which respond to their loads; the carrier's frame; every phase of
+    `after`, in which matters move. A matter whose steps are longer
     (`Phase.every`) computes its forces in the first of a few steps and moves in the last one, once it is known how the
     tank has moved through all of them; its load stands in between (`Load`). A step is a `multiple` of the base step,
     which changes only when all lists are rebuilt, to the least that any matter or the carrier allows
@@ -24,15 +25,19 @@ class Sequence:
     every CHECK_EVERY base steps whether it may take longer ones. What a matter must offer is in `solvers.tank.matter`.
     """
 
-    def __init__(self, matters: Several, carrier):
+    def __init__(self, matters: Several, carrier, pieces):
         self.matters, self.carrier = tuple(matters), carrier
         pushing = (phase for matter in matters for phase in matter.before)
-        self.before: tuple[Phase, ...] = (*pushing, *carrier.phases, *(p for m in matters for p in m.between))
+        self.before: tuple[Phase, ...] = (
+            *pushing,
+            *carrier.phases,
+            *(p for m in matters for p in m.between),
+            *pieces.phases,
+        )
         self.after: tuple[Phase, ...] = tuple(phase for matter in matters for phase in matter.after)
         alike = all(phase.every == 1 for phase in (*self.before, *self.after))
-        self.has_multiples = (
-            alike and carrier.has_multiples and all(matter.has_multiples for matter in matters)
-        )  # may any step be longer
+        # Whether any step may be longer
+        self.has_multiples = alike and all(one.has_multiples for one in (carrier, pieces, *matters))
 
     @property
     def exchange_interval(self) -> int:

@@ -18,13 +18,14 @@ USUAL = 4096  # wall particles of bodies for which there is room at least
 
 @ti.data_oriented
 class Bodies:
-    """The parts in the water of each world, rigid bodies whose motion in the tank is prescribed.
+    """The parts in the water of each world: rigid bodies whose motion in the tank is prescribed, or free.
 
     At a pose (O, θ) in the tank's axes a point that is drawn at p is at O + R(θ) p; it moves at V + ω × R p and is
     accelerated by A + ω' × R p − ω² R p, to which −2 Ω × v comes where the tank itself rolls at Ω. Wall particles of
     bodies follow those of the tank in memory.
 
-    Water that slides freely (`slip`) is accelerated by the part of it across the face before a wall particle alone.
+    Water that slides freely (`slip`) is accelerated by the part of it across the face before a wall particle alone. A
+    free body is taken as one without acceleration over the earth: `FreeBodyCoupling` adds what it has.
 
     `impulse` (units, parts; N s/m, N s) is what the water did to each part since it was last taken, `work` (units,
     parts; J/m) what the parts have done on the water by the last kick, `power` (units, parts; W/m) in it.
@@ -38,7 +39,7 @@ class Bodies:
         self.solids, self.reach = Solids(parts, water, lanes, wet), water.reach
         self.rows = len(self.solids.places)
         self.visibility = Visibility(arrays, parts, water, scene, wet)
-        self.fastest, self.moving = pieces.fastest, pieces.moving
+        self.fastest, self.moving, self.floats = pieces.fastest, pieces.moving, pieces.floats
         self.slips = water.slip
         if parts:
             self.poses, self.pull, self.way = pieces.poses, pieces.pull, pieces.way
@@ -127,6 +128,7 @@ class Bodies:
         p, row = self.particles, self.row(b)
         zero = ti.cast(0.0, self.exact)
         a_y, a_z, up, rate, v_y, v_z, turn, o_y, o_z = zero, zero, zero, zero, zero, zero, zero, zero, zero
+        loose = ti.cast(0.0, p.real)  # 1 of a free body
         if row >= 0:
             k = self.owner[row]
             a_y, a_z, up = self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k]
@@ -134,6 +136,12 @@ class Bodies:
             o_y, o_z = self.poses[w, k, Y], self.poses[w, k, Z]
             if ti.static(self.of_tank.rotating):
                 turn = 2.0 * self.of_tank.felt[4][w]
+            if ti.static(self.floats):
+                i = self.pieces.bodies.loose(w, k)
+                if i >= 0:
+                    loose, turn, rate = 1.0, zero, self.pieces.bodies.rate_over_earth(w, i)
+                    o_y, o_z = self.pieces.bodies.place[0][w, i], self.pieces.bodies.place[1][w, i]
+                    a_y, a_z = 0.0 - self.of_tank.felt[0][w], 0.0 - self.of_tank.felt[1][w]
         y, z = p.offset(b, ti.cast(o_y, p.where), 0), p.offset(b, ti.cast(o_z, p.where), 1)
         # Variables keep their type, and whole vectors cannot be cast: the factors have the vectors' own.
         of_square, of_up = ti.cast(rate * rate, p.real), ti.cast(up, p.real)
@@ -144,6 +152,9 @@ class Bodies:
             of_up * z + (of_square + spin) * y + (of_turn * drift_z - even_y),
             (of_square + spin) * z - of_up * y - (of_turn * drift_y + even_z),
         ]
+        if ti.static(self.floats):
+            for a in ti.static(range(p.axes)):
+                back[a] = back[a] - loose * felt[a]
         if ti.static(self.slips):
             along = [p.load(self.along[a], ti.max(row, 0)) for a in ti.static(range(p.axes))]
             self.turn(b, along, AT_START)

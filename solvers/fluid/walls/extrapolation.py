@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import FluidContext
+from solvers.fluid.walls.free_bodies import FreeBodyCoupling
 from solvers.fluid.walls.slip_correction import SlipCorrection
 from solvers.fluid.walls.tangential_correction import TangentialCorrection
 from solvers.machine.state import Axis, State
@@ -33,6 +34,7 @@ class Extrapolation:
         self.bodies = context.lists.bodies
         self.sticks = context.constants.viscous and not context.constants.slip
         self.slip, self.tangential = SlipCorrection(arrays, context), tangential
+        self.coupling = FreeBodyCoupling(arrays, context, tangential, self.sticks)
         if self.sticks:
             own = arrays.under("water")
             p = self.particles
@@ -63,6 +65,10 @@ class Extrapolation:
         moved = [p.zeros() for _ in ti.static(range(p.axes))]
         flow, inward = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
         steep = [p.zeros() for _ in ti.static(range(p.axes))]
+        before, fixed = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
+        firm = p.zeros()
+        if ti.static(self.coupling.acts):
+            firm += p.load(p.firm, b)
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
@@ -70,9 +76,15 @@ class Extrapolation:
             t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
             visible, volume = self.lists.visible(b, j, apart, AT_START), p.volume[jb, lane]
             weight = visible * c.kernel.value(t)
-            if ti.static(self.tangential.acts):
+            if ti.static(self.tangential.acts or self.coupling.acts):
+                slope = c.kernel.slope(t)
                 for a in ti.static(range(p.axes)):
-                    steep[a] = steep[a] - (visible * (volume * c.kernel.slope(t))) * apart[a]
+                    steep[a] = steep[a] - (visible * (volume * slope)) * apart[a]
+                if ti.static(self.coupling.acts):
+                    always = self.coupling.fixed_push(dot(apart, apart), slope, p.pressure[jb, lane], firm)
+                    for a in ti.static(range(p.axes)):
+                        before[a] += (weight * volume) * apart[a]
+                        fixed[a] = fixed[a] - (visible * (volume * always)) * apart[a]
             massive = weight * p.mass[jb, lane]
             if ti.static(self.sticks):
                 for a in ti.static(range(p.axes)):
@@ -112,6 +124,13 @@ class Extrapolation:
             self.tangential.note(b, seen, steep)
         if ti.static(self.slip.acts):
             self.slip.note(b, seen, flow, inward)
+        if ti.static(self.coupling.acts):  # noqa: SIM102 (compiled only where bodies are free)
+            if self.bodies.row(b) >= 0:
+                sees = ti.select(wet > SEEN, p.ones(), p.zeros()) / ti.max(seen, 1e-30)
+                for a in ti.static(range(p.axes)):
+                    lever[a], before[a] = sees * lever[a], before[a] / ti.max(seen, 1e-30)
+                still = sees * pressed + dot(pull, lever)
+                self.coupling.note(b, still, lever, steep, fixed, before, seen)
         if ti.static(self.sticks):
             for a in ti.static(range(p.axes)):
                 mean = moved[a] / ti.max(seen + airy, 1e-30)

@@ -1,0 +1,226 @@
+"""Bodies that are free to move in the tank: three freedoms each, which respond to all that pushes them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.phase import Phase
+from solvers.machine.state import Axis, State
+from solvers.motion.frame import turned
+from solvers.motion.poses import AT_MIDDLE as SECOND
+from solvers.motion.poses import AT_START as FIRST
+from solvers.motion.poses import Poses
+from solvers.tank.load import Load
+from solvers.tank.parts import Part
+from solvers.tank.pieces import AT_END, AT_MIDDLE, AT_START, COSINE, NUMBERS, RATE, SINE, V_Y, V_Z, Pieces, Y, Z
+
+MASS, INERTIA, CENTRE_Y, CENTRE_Z, RELEASE, ARM = range(6)  # columns of the table of bodies
+HELD, LET_GO, LOOSE = range(3)  # a body stands in the tank, is let go in this step, or moves freely
+BEYOND = 1e30  # m, a way in a step that no run bears: that of a body whose state is not a number
+NOT_FREE = -1
+
+
+def row_of(part: Part) -> list[float]:
+    """The kernel's numbers of a free part: columns of the table of bodies."""
+    free, corners = part.free, np.asarray(part.points, dtype=float)
+    arm = np.linalg.norm(corners - np.array(free.centre), axis=1).max()
+    return [free.mass, free.inertia, *free.centre, free.release, arm]
+
+
+@ti.data_oriented
+class FreeBodies:
+    """m u' = F + m g, I ω' = M: rigid bodies, by leapfrog (Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399).
+
+    F and M, about the centre of mass, are the loads that all matters book on a body in this step, so that it gains what
+    they lose. The velocities u and ω are inertial ones in the tank's axes, half a step behind the places, and drift as
+    those of water do (`Poses`), whatever the motion of the tank. Until its release a body is held: it stands in the
+    tank where it is drawn. Then it starts with the tank's velocity.
+
+    `place` (W, bodies; m, m, rad) are the centre of mass and the turn in the tank, `acceleration` the last known one
+    over the earth, which the velocities are to have for the time `behind` (s) until now; `work` (J) is what all loads
+    have done on each body. `of_part` has the bodies' numbers by those of the parts. The load on the k-th part is that
+    on the piece `first` + k.
+    """
+
+    def __init__(self, arrays: State, pieces: Pieces, carrier, first: int):
+        free = [k for k, part in enumerate(pieces.parts) if part.free]
+        self.pieces, self.count, self.worlds, self.first = pieces, len(free), pieces.worlds, first
+        self.parts, self.loads, self.exact = free, (), arrays.exact
+        self.phases = (Phase(self.follow),) if free else ()
+        if not free:
+            return
+        own, of_part = arrays.under("free"), np.full(pieces.count, NOT_FREE)
+        of_part[free] = np.arange(self.count)
+        self.of_part = own.holding("of_part", of_part, "part", ti.i32)
+        self.part_of = own.holding("part_of", np.array(free), "body", ti.i32)
+        self.rows = np.array([row_of(pieces.parts[k]) for k in free])
+        self.table = own.holding("bodies", self.rows, "body number", own.exact)
+        self.of_tank = Poses(own, carrier, self.worlds)
+        each = Axis("world", self.worlds), Axis("body", self.count)
+        names = ("y", "z", "turn"), ("velocity_y", "velocity_z", "rate"), ("gain_y", "gain_z", "gain_turn")
+        self.place, self.velocity, self.acceleration = (own.reals(each, *of, kind=own.exact) for of in names)
+        self.work, self.behind = own.reals(each, "work", "behind", kind=own.exact)
+        (self.state,) = own.integers(each, "state")
+
+    def bear(self, loads: Sequence[Load]) -> None:
+        """Respond to these loads from now on, those of all matters."""
+        self.loads = tuple(loads)
+
+    def hold_all(self) -> None:
+        """Hold all bodies where they are drawn, until their releases."""
+        if self.count:
+            for field in (*self.place, *self.velocity, *self.acceleration, self.work, self.behind):
+                field.fill(0.0)
+            for field, column in zip(self.place, (CENTRE_Y, CENTRE_Z), strict=False):
+                field.from_numpy(np.tile(self.rows[:, column], (self.worlds, 1)))
+            self.state.fill(HELD)
+
+    def account(self, pose: np.ndarray, gravity: float) -> dict[str, np.ndarray]:
+        """Of each part (W, parts, …) in tanks at these poses (W, 3): how it moves, its energy, and the work on it.
+
+        Its velocity is that of the centre of mass over the earth, in the tank's axes; all is zero of parts that are not
+        free.
+        """
+        each = self.worlds, self.pieces.count
+        found = {"part_velocity": np.zeros((*each, 3)), "part_energy": np.zeros(each), "part_gain": np.zeros(each)}
+        if not self.count:
+            return found
+        behind, (y, z, _) = self.behind.to_numpy(), (field.to_numpy() for field in self.place)
+        pairs = zip(self.velocity, self.acceleration, strict=True)
+        velocity = np.stack([u.to_numpy() + behind * a.to_numpy() for u, a in pairs], axis=-1)
+        mass, inertia = self.rows[:, MASS], self.rows[:, INERTIA]
+        height = pose[:, 1:2] + np.sin(pose[:, 2:]) * y + np.cos(pose[:, 2:]) * z
+        loose = self.state.to_numpy() != HELD
+        kinetic = 0.5 * mass * (velocity[..., :2] ** 2).sum(axis=-1) + 0.5 * inertia * velocity[..., 2] ** 2
+        found["part_velocity"][:, self.parts] = velocity
+        found["part_energy"][:, self.parts] = loose * kinetic + mass * gravity * height
+        found["part_gain"][:, self.parts] = self.work.to_numpy()
+        return found
+
+    @ti.func
+    def loose(self, w, k):
+        """The number of the body that part k is, if it moves freely in this step of a world; else NOT_FREE."""
+        i = self.of_part[k]
+        if i >= 0:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
+            if self.state[w, i] == HELD:
+                i = NOT_FREE
+        return i
+
+    @ti.func
+    def note_start(self, w, t, dt):
+        """Note where the bodies of a world are as a step of dt (s) begins at t (s), and let go those whose time it is."""
+        self.of_tank.note_start(w, t, dt)
+        for i in range(self.count):
+            if self.state[w, i] == HELD:  # noqa: SIM102
+                if t >= self.table[i, RELEASE]:
+                    self.state[w, i] = LET_GO
+                    speed = self.tank_speed(w, 3, self.place[0][w, i], self.place[1][w, i])
+                    for k in ti.static(range(3)):
+                        self.velocity[k][w, i] = speed[k]
+            if self.state[w, i] == HELD:
+                speed = self.tank_speed(w, 3, self.place[0][w, i], self.place[1][w, i])
+                for part in ti.static((AT_START, AT_MIDDLE, AT_END)):
+                    self.note_pose(w, i, part, 3, speed)
+            else:
+                late = self.behind[w, i]
+                u = ti.Vector([self.velocity[k][w, i] + late * self.acceleration[k][w, i] for k in ti.static(range(3))])
+                self.note_pose(w, i, AT_START, 3, u)
+
+    @ti.func
+    def rate_over_earth(self, w, i):
+        """The rate (rad/s) at which a body turns as the step begins."""
+        return self.velocity[2][w, i] + self.behind[w, i] * self.acceleration[2][w, i]
+
+    @ti.func
+    def tank_speed(self, w, first: ti.template(), y, z):
+        """The velocity and rate of turning of the tank's wall at a place, in its axes: at the start (3), or middle (0)."""
+        v = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
+        if ti.static(self.of_tank.moving):
+            rate = self.of_tank.walls[first + 2][w]
+            v[0], v[1] = self.of_tank.walls[first][w] - rate * z, self.of_tank.walls[first + 1][w] + rate * y
+            v[2] = rate
+        return v
+
+    @ti.func
+    def note_pose(self, w, i, part: ti.template(), of_tank: ti.template(), u: ti.template()):
+        """Note the pose of a body, as a part, with the inertial velocities u, relative to the tank's (`tank_speed`)."""
+        k, at = self.part_of[i], ti.static(NUMBERS * part)
+        y, z, turn = self.place[0][w, i], self.place[1][w, i], self.place[2][w, i]
+        arm = turned(self.table[i, CENTRE_Y], self.table[i, CENTRE_Z], turn)  # from the drawn origin
+        v = u - self.tank_speed(w, of_tank, y, z)
+        poses = ti.static(self.pieces.poses)
+        poses[w, k, at + Y], poses[w, k, at + Z] = y - arm[0], z - arm[1]
+        poses[w, k, at + COSINE], poses[w, k, at + SINE] = ti.cos(turn), ti.sin(turn)
+        poses[w, k, at + V_Y], poses[w, k, at + V_Z] = v[0] + v[2] * arm[1], v[1] - v[2] * arm[0]
+        poses[w, k, at + RATE] = v[2]
+
+    @ti.func
+    def about_centre(self, w, i, load: ti.template()):
+        """A load about the tank's origin as one about the centre of mass of a body."""
+        return ti.Vector([load[0], load[1], load[2] - (self.place[0][w, i] * load[1] - self.place[1][w, i] * load[0])])
+
+    @ti.func
+    def load_on(self, w, i):
+        """The load of all matters on a body: force, and moment about its centre of mass, in the tank's axes."""
+        load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
+        for m in ti.static(range(len(self.loads))):
+            load += self.about_centre(w, i, self.loads[m].on_piece(w, self.first + self.part_of[i]))
+        return load
+
+    @ti.func
+    def follow(self, w, time, kick, dt):
+        """Move the bodies of a world through the step of dt (s) that begins now, with the present loads."""
+        t, step = ti.cast(time, self.exact), ti.cast(dt, self.exact)
+        self.of_tank.note_passage(w, t, step)
+        for i in range(self.count):
+            if self.state[w, i] != HELD:
+                self.move(w, i, ti.cast(kick, self.exact), step)
+
+    @ti.func
+    def move(self, w, i, kick, step):
+        """One leapfrog step of a body."""
+        during = kick
+        if self.state[w, i] == LET_GO:  # at rest, half a kick brings it to the middle of the step
+            during, self.state[w, i] = 0.5 * step, LOOSE
+        load, mass, inertia = self.load_on(w, i), self.table[i, MASS], self.table[i, INERTIA]
+        pull = ti.Vector([self.of_tank.felt[0][w], self.of_tank.felt[1][w]])
+        a = ti.Vector([load[0] / mass + pull[0], load[1] / mass + pull[1], load[2] / inertia])
+        before = ti.Vector([self.velocity[k][w, i] for k in ti.static(range(3))])
+        mean = before + (during - 0.5 * step) * a  # as the step begins
+        self.work[w, i] = self.work[w, i] + load.dot(mean) * during
+        u, arm, farthest = before + during * a, self.table[i, ARM], ti.cast(0.0, self.exact)
+        y, z = self.place[0][w, i], self.place[1][w, i]
+        u, a = self.drift(w, i, FIRST, u, a, 0.5 * step)
+        self.note_pose(w, i, AT_MIDDLE, 0, u)
+        speed = u - self.tank_speed(w, 0, self.place[0][w, i], self.place[1][w, i])
+        u, a = self.drift(w, i, SECOND, u, a, 0.5 * step)
+        self.note_pose(w, i, AT_END, 0, u + 0.5 * step * a)
+        gone_y, gone_z = self.place[0][w, i] - y, self.place[1][w, i] - z
+        farthest = ti.sqrt(gone_y * gone_y + gone_z * gone_z) + ti.abs(speed[2]) * step * arm
+        if not farthest < BEYOND:
+            farthest = BEYOND
+        self.pieces.way[w] = ti.max(self.pieces.way[w], ti.cast(farthest, self.pieces.real))
+        for k in ti.static(range(3)):
+            self.velocity[k][w, i], self.acceleration[k][w, i] = u[k], a[k]
+        self.behind[w, i] = 0.5 * step
+
+    @ti.func
+    def drift(self, w, i, half: ti.template(), u: ti.template(), a: ti.template(), dt):
+        """Move a body with the velocities u for half a step of dt (s); u and a in the tank's axes at its end."""
+        place = ti.Vector([self.place[k][w, i] + dt * u[k] for k in ti.static(range(3))])
+        after, gain = u, a
+        if ti.static(self.of_tank.moving):
+            cos, sin = self.of_tank.drift[w, half, 0], self.of_tank.drift[w, half, 1]
+            e_y, e_z = self.of_tank.drift[w, half, 2], self.of_tank.drift[w, half, 3]
+            self.place[0][w, i], self.place[1][w, i] = (
+                cos * place[0] - sin * place[1] + e_y,
+                sin * place[0] + cos * place[1] + e_z,
+            )
+            self.place[2][w, i] = place[2] + ti.atan2(sin, cos)
+            after = ti.Vector([cos * u[0] - sin * u[1], sin * u[0] + cos * u[1], u[2]])
+            gain = ti.Vector([cos * a[0] - sin * a[1], sin * a[0] + cos * a[1], a[2]])
+        else:
+            for k in ti.static(range(3)):
+                self.place[k][w, i] = place[k]
+        return after, gain
