@@ -123,9 +123,13 @@ class FreeBodies:
                 for part in ti.static((AT_START, AT_MIDDLE, AT_END)):
                     self.note_pose(w, i, part, 3, speed)
             else:
-                late = self.behind[w, i]
-                u = ti.Vector([self.velocity[k][w, i] + late * self.acceleration[k][w, i] for k in ti.static(range(3))])
-                self.note_pose(w, i, AT_START, 3, u)
+                last = ti.Vector([self.acceleration[k][w, i] for k in ti.static(range(3))])
+                self.note_pose(w, i, AT_START, 3, self.velocity_with(w, i, last))
+
+    @ti.func
+    def velocity_with(self, w, i, a: ti.template()):
+        """The velocities of a body over the earth as the step begins, if it has the accelerations a until then."""
+        return ti.Vector([self.velocity[k][w, i] + self.behind[w, i] * a[k] for k in ti.static(range(3))])
 
     @ti.func
     def rate_over_earth(self, w, i):

@@ -105,9 +105,7 @@ class FreeBodyCoupling:
             straight = [force * steep[a] for a in ti.static(range(p.axes))]
             turning = arm[0] * straight[1] - arm[1] * straight[0]
             if ti.static(self.tangential.acts):
-                off = [
-                    (force * seen) * p.load(self.tangential.correction[a], b) for a in ti.static(range(p.axes))
-                ]
+                off = [(force * seen) * p.load(self.tangential.correction[a], b) for a in ti.static(range(p.axes))]
                 turning = turning - ((arm[0] - before[0]) * off[1] - (arm[1] - before[1]) * off[0])
                 for a in ti.static(range(p.axes)):
                     straight[a] = straight[a] - off[a]
@@ -136,6 +134,7 @@ class FreeBodyCoupling:
                         self.accelerate(w, i)
                         solved += 1
                 self.foresee(w, i)
+                self.carry(w, i)
 
     @ti.func
     def begin(self, w, i):
@@ -193,6 +192,19 @@ class FreeBodyCoupling:
         found = whole.inverse() @ f
         for k in ti.static(range(3)):
             self.solution[w, i, k] = found[k]
+
+    @ti.func
+    def carry(self, w, i):
+        """Give a body, and its wall particles, the velocities (m/s) that it has at the start with the solution."""
+        p, part = self.particles, self.free.part_of[i]
+        u = self.free.velocity_with(w, i, ti.Vector([self.solution[w, i, k] for k in ti.static(range(3))]))
+        self.free.note_pose(w, i, AT_START, 3, u)
+        rate = ti.cast(u[2], p.real)
+        for row in range(self.bodies.ends[part], self.bodies.ends[part + 1]):
+            b = w * p.stride + p.fluid_blocks + self.bodies.first[0] + row
+            arm = [p.offset(b, ti.cast(self.free.place[a][w, i], p.where), a) for a in ti.static(range(p.axes))]
+            p.store(p.velocity[0], b, ti.cast(u[0], p.real) - rate * arm[1])
+            p.store(p.velocity[1], b, ti.cast(u[1], p.real) + rate * arm[0])
 
     @ti.func
     def foresee(self, w, i):
