@@ -41,6 +41,7 @@ from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.flow_checks import check_weight
 from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.floating import check_floating
 from lab.preset.sections.water.solids import check_solids
 from lab.preset.sections.water.tanks import Pool, check_tanks, pools
 from solvers.fluid import given as fluid
@@ -109,6 +110,11 @@ class Preset:
     def matters(self) -> tuple[str, ...]:
         """The keys of the matters that the tank holds; none if it is empty."""
         return tuple(name for name in MATTERS if getattr(self, name) is not None)
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The names of the parts that float."""
+        return tuple(name for name, part in self.parts.items() if part.floats)
 
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:
@@ -216,6 +222,7 @@ def check(preset: Preset) -> None:
     duration = duration_of(preset.run, preset.motion)
     others = preset.ship is not None, bool(preset.motion.parts), bool(preset.matters)
     check_axle(preset.axle, *others, duration, max(preset.tank.extent))
+    check_floating(preset)
     if preset.water is not None:
         check_solids(preset)
     check_stability(preset.stability, preset.ship)

@@ -61,10 +61,16 @@ CHUNK_ROWS = 1024
 ATTEMPTS, RETRY_DELAY = 100, 0.02  # attempts to open a file that another process has open, and the pause (s) between
 
 
-def series_of(afloat: bool, matters: Collection[str] = MATTERS, axled: bool = False) -> tuple[Quantity, ...]:
-    """The quantities in the series of a run with these matters; `afloat`: with those of a ship, `axled`: of an axle."""
+def series_of(
+    afloat: bool, matters: Collection[str] = MATTERS, axled: bool = False, floating: bool = False
+) -> tuple[Quantity, ...]:
+    """The quantities in the series of a run with these matters.
+
+    afloat: with those of a ship; axled: of an axle; floating: of bodies that float.
+    """
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].SERIES)
-    return (TIME, *tank.SERIES, *of_matters, *(ship.SERIES if afloat else ()), *(tank.OF_AXLE if axled else ()))
+    further = (ship.SERIES, afloat), (tank.OF_AXLE, axled), (tank.OF_BODIES, floating)
+    return (TIME, *tank.SERIES, *of_matters, *(quantity for all_of, there in further if there for quantity in all_of))
 
 
 def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
@@ -76,19 +82,20 @@ def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS) -> 
 def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
     afloat, matters, names = bool(preset.ship), preset.matters, names_of(preset)
-    whole = series_of(afloat, matters, bool(preset.axle))
+    whole = series_of(afloat, matters, bool(preset.axle), bool(preset.bodies))
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
     tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
     return tables | ({"steering": STEERING} if steered else {})
 
 
 def names_of(preset: "Preset | Content", parts: Iterable[str] = ()) -> dict[str, list[str]]:
-    """The names of a preset's gauges of pressure, level and force, and of parts, by the owners of their quantities.
+    """The names of a preset's gauges, of parts, and of those that float, by the owners of their quantities.
 
     They are in the order of the columns of these quantities.
     """
     pressure, level, force = parted(preset.gauges)
-    return {"gauge": [*pressure], "level": [*level], "edge": [*force], "part": [*parts]}
+    bodies = [*preset.bodies]
+    return {"gauge": [*pressure], "level": [*level], "edge": [*force], "part": [*parts], "body": bodies}
 
 
 def sizes_of(

@@ -6,6 +6,7 @@ from solvers.machine.quantity import Quantity
 COUNTED = {  # what each axis counts, and the preset key that sets its size
     "world": "beds (run.repeats)",
     "part": "parts (parts.NAME)",
+    "body": "floating bodies (parts.NAME.density)",
     "grain": "grains (grains.count)",
     "water_particle": "particles of water (water.spacing)",
     "air_particle": "particles of air (water.spacing)",
@@ -35,6 +36,8 @@ def recorded_by(name: object) -> str:
         return "; a preset with a table [ship] records it."
     if name in _names(series_of(afloat=False, axled=True)):
         return "; a preset with a table [axle] records it."
+    if name in _names(series_of(afloat=False, floating=True)):
+        return "; a preset with a part that floats (parts.NAME.density) records it."
     if name in _names(frames_of()):
         return "; it is in the frames (record.picture_rate)."
     return "; nothing records that."

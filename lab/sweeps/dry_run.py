@@ -82,8 +82,9 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
 
 def _poses(preset: Preset, scene: Scene, position: np.ndarray, times: np.ndarray) -> Iterator[np.ndarray]:
     """Pose (1, 3) of the tank at each time (s); one that responds to its load rolls slowly."""
-    if scene.responds or not scene.motions[0]:
-        yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * scene.responds for time in times)
+    answers = bool(scene.vessels or scene.axles)
+    if answers or not scene.motions[0]:
+        yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * answers for time in times)
         return
     simulation = Simulation(scene, position, preset.run.threads, arch="cpu")
     try:

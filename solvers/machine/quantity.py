@@ -16,6 +16,7 @@ OWNERS = {
     "world": ("world",),
     "grain": ("world", "grain"),
     "part": ("world", "part"),
+    "body": ("world", "body"),
     "water_particle": ("world", "water_particle"),
     "air_particle": ("world", "air_particle"),
     "gauge": ("world", "gauge"),

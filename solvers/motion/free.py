@@ -77,26 +77,21 @@ class FreeBodies:
             self.state.fill(HELD)
 
     def account(self, pose: np.ndarray, gravity: float) -> dict[str, np.ndarray]:
-        """Of each part (W, parts, …) in tanks at these poses (W, 3): how it moves, its energy, and the work on it.
-
-        Its velocity is that of the centre of mass over the earth, in the tank's axes; all is zero of parts that are not
-        free.
-        """
-        each = self.worlds, self.pieces.count
-        found = {"part_velocity": np.zeros((*each, 3)), "part_energy": np.zeros(each), "part_gain": np.zeros(each)}
+        """The quantities of each body (W, bodies, …) in tanks at these poses (W, 3): `tank.quantities.OF_BODIES`."""
         if not self.count:
-            return found
-        behind, (y, z, _) = self.behind.to_numpy(), (field.to_numpy() for field in self.place)
-        pairs = zip(self.velocity, self.acceleration, strict=True)
+            return {}
+        place = np.stack([field.to_numpy() for field in self.place], axis=-1)
+        behind, pairs = self.behind.to_numpy(), zip(self.velocity, self.acceleration, strict=True)
         velocity = np.stack([u.to_numpy() + behind * a.to_numpy() for u, a in pairs], axis=-1)
-        mass, inertia = self.rows[:, MASS], self.rows[:, INERTIA]
-        height = pose[:, 1:2] + np.sin(pose[:, 2:]) * y + np.cos(pose[:, 2:]) * z
-        loose = self.state.to_numpy() != HELD
+        mass, inertia, roll = self.rows[:, MASS], self.rows[:, INERTIA], pose[:, 2:]
+        height = pose[:, 1:2] + np.sin(roll) * place[..., 0] + np.cos(roll) * place[..., 1]
         kinetic = 0.5 * mass * (velocity[..., :2] ** 2).sum(axis=-1) + 0.5 * inertia * velocity[..., 2] ** 2
-        found["part_velocity"][:, self.parts] = velocity
-        found["part_energy"][:, self.parts] = loose * kinetic + mass * gravity * height
-        found["part_gain"][:, self.parts] = self.work.to_numpy()
-        return found
+        return {
+            "body_place": place,
+            "body_velocity": velocity,
+            "body_energy": kinetic + mass * gravity * height,
+            "body_work": self.work.to_numpy().astype(float),
+        }
 
     @ti.func
     def loose(self, w, k):
@@ -109,7 +104,7 @@ class FreeBodies:
 
     @ti.func
     def note_start(self, w, t, dt):
-        """Note where the bodies of a world are as a step of dt (s) begins at t (s), and let go those whose time it is."""
+        """Note where a world's bodies are as a step of dt (s) begins at t (s), and let go those whose time it is."""
         self.of_tank.note_start(w, t, dt)
         for i in range(self.count):
             if self.state[w, i] == HELD:  # noqa: SIM102
@@ -138,7 +133,7 @@ class FreeBodies:
 
     @ti.func
     def tank_speed(self, w, first: ti.template(), y, z):
-        """The velocity and rate of turning of the tank's wall at a place, in its axes: at the start (3), or middle (0)."""
+        """The velocity and rate of turning of the tank's wall at a place, at the start (3) or in the middle (0)."""
         v = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         if ti.static(self.of_tank.moving):
             rate = self.of_tank.walls[first + 2][w]

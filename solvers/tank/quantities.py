@@ -1,6 +1,6 @@
 """What is known of the tank: how it moves and what loads it (`motion.sampler`), and its parts (`walls`).
 
-A tank on an axle has further ones (`motion.axle`). Files of quantities import no Taichi, for those who read recordings
+A tank on an axle has further ones (`motion.axle`), and so have bodies that float (`motion.free`). Files of quantities import no Taichi, for those who read recordings
 need none.
 """
 
@@ -16,6 +16,26 @@ FRAMES = (
     POSE,
     Quantity("part", "m", directions, "displacement of each moving part in the tank", per="part"),
     Quantity("part_turn", "rad", label="angle by which each part has turned in the tank", per="part", never=0.0),
+)
+OF_BODIES = (
+    Quantity(
+        "body_place",
+        "m, m, rad",
+        freedoms,
+        "centre of mass of each floating body in the tank, and how far it has turned",
+        per="body",
+    ),
+    Quantity(
+        "body_velocity",
+        "m/s, m/s, rad/s",
+        freedoms,
+        "velocity of the centre of mass of each floating body over the earth, and its rate of turning",
+        per="body",
+    ),
+    Quantity(
+        "body_energy", "J", label="kinetic and potential energy of each floating body, over the earth", per="body"
+    ),
+    Quantity("body_work", "J", label="work of all that pushes each floating body, since its release", per="body"),
 )
 OF_AXLE = (
     Quantity("axle_moment", "N m", label="moment of the cargo on the whole tank about the axle", mean=True),

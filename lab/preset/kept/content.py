@@ -25,6 +25,7 @@ class Content:
     ship: bool
     axle: bool
     gauges: dict[str, Gauge]
+    bodies: tuple[str, ...]
     repeats: int
 
 

@@ -20,7 +20,8 @@ def content(table: object) -> Content:
     has = {name: kept.get(name) is not None for name in (*MATTERS, "material", "ship", "axle")}
     repeats = kept.get("run", {}).get("repeats", 1)
     matters = tuple(name for name in MATTERS if has[name])
-    return Content(matters, has["material"], has["ship"], has["axle"], gauges, repeats)
+    bodies = tuple(name for name, part in kept.get("parts", {}).items() if part.get("density") or part.get("mass"))
+    return Content(matters, has["material"], has["ship"], has["axle"], gauges, bodies, repeats)
 
 
 def _check(taken: Taken, value: object, key: str) -> None:

@@ -5,15 +5,19 @@ from dataclasses import dataclass, make_dataclass
 from math import isfinite
 from typing import Annotated
 
+import numpy as np
+
 from lab.base.errors import LabError
 from lab.preset.outline import MOST_CORNERS, Point
 from lab.preset.sections.history import Record, check_record, check_start
 from lab.preset.units import needed, show
-from solvers.machine.marks import Doc
+from solvers.machine.marks import Doc, Interval, Unit
 from solvers.motion import MOTIONS
 from solvers.tank import parts as solved
+from solvers.tank.outline import moments
 
 MOST_PARTS = 50
+FREE = "centre", "inertia", "release"  # keys of bodies that float alone
 
 
 @dataclass(frozen=True)
@@ -23,8 +27,14 @@ class PartGroup(solved.Part):
     From `start` (s after the tank's motion begins) it is displaced by `move` in the tank's frame: it accelerates with
     `acceleration` up to `speed`, and brakes likewise at the end. If the way is too short to reach `speed`, the top
     speed is lower. A part whose `move` is zero stands still. It may also have motions as the tank has. It is drawn in
-    the axes of [tank], in whichever tank it stands.
+    the axes of [tank], in whichever tank it stands. A body with a `density`, or a `mass`, floats in the water: from its
+    `release` on it moves as what pushes it says.
     """
+
+    @property
+    def floats(self) -> bool:
+        """Whether it moves freely."""
+        return self.density is not None or self.mass is not None
 
     @property
     def moves(self) -> dict[str, object]:
@@ -42,15 +52,60 @@ class PartGroup(solved.Part):
         """The corners (m) as a line to draw; that of a body ends where it begins."""
         return (*self.points, self.points[0]) if self.closed else self.points
 
-    def solved(self, tank: int = 0) -> solved.Body:
-        """The part as the solver takes it, in the tank of this number."""
+    def solved(self, tank: int = 0, thickness: float = 1.0) -> solved.Body:
+        """The part as the solver takes it, in the tank of this number, of a `thickness` (m)."""
         motions, move = tuple(self.moves.values()), (self.move, self.start, self.speed, self.acceleration)
-        return solved.Body(self.points, *move, self.closed, motions, tank)
+        free = self.freedom(thickness) if self.floats else None
+        return solved.Body(self.points, *move, self.closed, motions, tank, free)
+
+    def freedom(self, thickness: float) -> "solved.Free":
+        """What moves freely: its mass, inertia and centre, those of an even body of a `thickness` (m) unless given."""
+        area, centre, polar = moments(np.array(self.points))  # with the sign of the direction in which it is drawn
+        mass = self.density * abs(area) * thickness if self.mass is None else self.mass
+        inertia = mass * polar / area if self.inertia is None else self.inertia
+        return solved.Free(mass, inertia, self.centre or centre, self.release)
 
 
 WHERE = "The tank in which it stands, by its name in [tanks]; by default it is [tank]."
 KEYS = [("closed", Annotated[bool, Doc("Whether it is a solid body.")], False)]
 KEYS.append(("tank", Annotated[str | None, Doc(WHERE)], None))
+KEYS += [
+    (
+        "density",
+        Annotated[float | None, Unit("kg/m^3"), Interval(gt=0), Doc("Its mean density, of a body that floats.")],
+        None,
+    ),
+    (
+        "mass",
+        Annotated[
+            float | None,
+            Unit("kg"),
+            Interval(gt=0),
+            Doc("Its mass, of a body that floats, in a slab as thick as the tank; instead of its density."),
+        ],
+        None,
+    ),
+    (
+        "centre",
+        Annotated[Point | None, Unit("m"), Doc("Its centre of mass as drawn; by default that of an even body.")],
+        None,
+    ),
+    (
+        "inertia",
+        Annotated[
+            float | None,
+            Unit("kg m^2"),
+            Interval(gt=0),
+            Doc("Its moment of inertia about the centre of mass; by default that of an even body."),
+        ],
+        None,
+    ),
+    (
+        "release",
+        Annotated[float, Unit("s"), Interval(ge=0), Doc("When it is let go; until then it stands in the tank.")],
+        0.0,
+    ),
+]
 KEYS += [(name, Annotated[kind | None, Doc(f"Its {name}.")], None) for name, kind in MOTIONS.items()]
 KEYS.append(("history", Annotated[Record | None, Doc("Its motion from a file.")], None))
 Part = make_dataclass("Part", KEYS, bases=(PartGroup,), frozen=True)
@@ -61,7 +116,7 @@ Part.__module__ = __name__  # so that it can be sent to another process
 def parts_of(preset) -> tuple[solved.Body, ...]:
     """The parts of a preset as the solver takes them."""
     numbers = {name: number for number, name in enumerate(preset.tanks, start=1)}
-    return tuple(part.solved(numbers.get(part.tank, 0)) for part in preset.parts.values())
+    return tuple(part.solved(numbers.get(part.tank, 0), preset.thickness) for part in preset.parts.values())
 
 
 def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], tanks: Mapping[str, object]) -> None:
@@ -75,6 +130,8 @@ def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], tanks: Mapp
             others = f"one of {', '.join(tanks)}" if tanks else "no further tanks here"
             raise LabError(f"parts.{name}.tank: is {part.tank!r}, and there are {others}; leave it out for [tank].")
         _check_motions(part, f"parts.{name}", _larger_side(outline))
+        for key, fault in _faults_of_freedom(part):
+            raise LabError(f"parts.{name}.{key}: {fault}.")
 
 
 def _check_motions(part: Part, key: str, side: float) -> None:
@@ -93,6 +150,21 @@ def _check_motions(part: Part, key: str, side: float) -> None:
         motion = getattr(part, name)
         if motion and motion.phase:
             raise LabError(f"{key}.{name}.phase: a part starts where it is drawn; leave the phase out.")
+
+
+def _faults_of_freedom(part: Part) -> Iterator[tuple[str, str]]:
+    """The keys at fault of a body that floats, or that say something of one where none does."""
+    if not part.floats:
+        for key in FREE:
+            if getattr(part, key):
+                yield key, "goes with a body that floats; give its density, or leave this out"
+        return
+    if part.mass is not None and part.density is not None:
+        yield "mass", "the density says it already; give one of the two"
+    if not part.closed:
+        yield "closed", "a body that floats is solid; set closed = true, or leave out its density"
+    for key in part.moves or (["move"] if part.way else []):
+        yield key, "a body that floats moves as what pushes it says; leave this out, or its density"
 
 
 def _faults(part: Part, outline: Sequence[Point]) -> Iterator[tuple[str, str]]:
