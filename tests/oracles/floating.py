@@ -1,0 +1,62 @@
+"""Bodies that float, for tests: boxes in the middle of a tank, and how the whole of water and bodies is balanced."""
+
+from math import cos, sin, sqrt
+
+import numpy as np
+
+from solvers.fluid.given import Fluid, Water
+from solvers.fluid.start.parts import clear_of
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+from solvers.tank.parts import Body, Free
+from tests.oracles.water import GRAVITY, box, lattice
+
+DENSITY = 1000.0
+
+
+def afloat(
+    ratio: float,
+    size: tuple[float, float] = (1.0, 0.5),
+    tank: tuple[float, float] = (2.0, 1.4),
+    depth: float = 0.8,
+    spacing: float = 0.05,
+    place: tuple[float, float] | None = None,
+    heel: float = 0.0,
+    release: float = 0.0,
+    **changes,
+) -> Scene:
+    """A box of a `size` (m) and of `ratio` times the water's density, as deep in still water as it floats upright.
+
+    Or with its middle at a `place` (m), and heeled (rad). Changes are of the scene or of its water.
+    """
+    width, height = size
+    middle = place or (0.0, depth + (0.5 - ratio) * height)
+    half = [(y * 0.5 * width, z * 0.5 * height) for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    corners = [
+        (middle[0] + cos(heel) * y - sin(heel) * z, middle[1] + sin(heel) * y + cos(heel) * z) for y, z in half
+    ]
+    mass = DENSITY * ratio * width * height
+    free = Free(mass, mass * (width**2 + height**2) / 12.0, middle, release)
+    body = Body(tuple(corners), closed=True, free=free)
+    sound = 10.0 * sqrt(GRAVITY * depth)
+    drops = lattice(tank[0], depth, spacing, sound)
+    drops = drops[:, clear_of(drops["position"][0], (body,), spacing)]
+    of_water = {name: changes.pop(name) for name in list(changes) if name in Water.__dataclass_fields__}
+    water = Water(**{"spacing": spacing, "sound_speed": sound, "density": DENSITY} | of_water)
+    given = {"outline": box(*tank), "matters": (Fluid(water, drops),), "parts": (body,), "gravity": GRAVITY}
+    return Scene(**{**given, "thickness": 1.0, **changes})
+
+
+def momentum(run: Simulation) -> np.ndarray:
+    """Momentum (2,) N s of the water and the bodies of the first world, in the tank's axes, where steps end."""
+    p, bodies = run.water.particles, run.parts.bodies
+    mass, *velocity = (values[0] for values in p.read(p.mass, *p.velocity))
+    of_water = np.array([mass @ along for along in velocity])
+    of_bodies = np.array([field.to_numpy()[0] @ bodies.rows[:, 0] for field in bodies.velocity[:2]])
+    return run.scene.tanks[0].thickness * of_water + of_bodies
+
+
+def weight(run: Simulation) -> float:
+    """Weight (N) of the water and the bodies of the first world."""
+    p = run.water.particles
+    return GRAVITY * (run.scene.tanks[0].thickness * p.read(p.mass)[0][0].sum() + run.parts.bodies.rows[:, 0].sum())
