@@ -32,9 +32,7 @@ def afloat(
     width, height = size
     middle = place or (0.0, depth + (0.5 - ratio) * height)
     half = [(y * 0.5 * width, z * 0.5 * height) for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    corners = [
-        (middle[0] + cos(heel) * y - sin(heel) * z, middle[1] + sin(heel) * y + cos(heel) * z) for y, z in half
-    ]
+    corners = [(middle[0] + cos(heel) * y - sin(heel) * z, middle[1] + sin(heel) * y + cos(heel) * z) for y, z in half]
     mass = DENSITY * ratio * width * height
     free = Free(mass, mass * (width**2 + height**2) / 12.0, middle, release)
     body = Body(tuple(corners), closed=True, free=free)

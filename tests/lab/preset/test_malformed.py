@@ -133,7 +133,6 @@ TABLES = {
     "wave-flume.csv": "time,sway\n" + "".join(f"{2 * k},{k * k * (30 - 2 * k)}e-5\n" for k in range(11)),
     "flap-flume.csv": "time,roll\n" + "".join(f"{2 * k},{k * k * (30 - 2 * k)}e-5\n" for k in range(11)),
     "ciemito-flume.csv": "time,sway\n" + "".join(f"{4 * k},{k * k * (30 - 2 * k)}e-5\n" for k in range(11)),
-    "sinking-cylinder.csv": "time,heave\n" + "".join(f"{0.1 * k:.1f},{-k * k}e-3\n" for k in range(11)),
     "impact.csv": "time,roll\n" + "".join(f"{0.1 * k:.1f},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),
     "stack-fall.csv": "y,z,radius\n-0.006,0.0007,0.0007\n0,0.0007,0.0007\n0.003,0.003,0.0007\n",
 }

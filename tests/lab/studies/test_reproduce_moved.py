@@ -34,13 +34,12 @@ def test_a_square_has_the_drag_and_the_added_mass_of_its_force():
     assert verdicts["drag from 4.5 to 5.5 s"] == "agrees" and verdicts["drag from 0.4 to 0.7 s"] != "agrees"
 
 
-def test_a_cylinder_falls_by_the_force_less_its_weight():
+def test_how_far_a_cylinder_has_sunk_is_in_its_radius_and_the_time_of_its_fall():
     one = ran("validation/sinking-cylinder")
     time = np.arange(0.0, 0.95, 2.5e-3)
-    mass = 1.2 * 1000.0 * np.pi  # as `sinking` has it, of a circle of the points' width
-    force = np.zeros((len(time), 1, 1, 3))
-    force[..., 1] = mass * (9.81 - 4.0)
-    one.recording.series |= {"time": time, "part_force": force}
+    place = np.zeros((len(time), 1, 1, 3))
+    place[..., 0, 0, 1] = 14.0 - 2.0 * time**2
+    one.recording.series |= {"time": time, "body_place": place}
     when, way = sinking.sunk(one)
     np.testing.assert_allclose(way, -2.0 * (when / np.sqrt(9.81)) ** 2, rtol=0.01, atol=0.01)
 

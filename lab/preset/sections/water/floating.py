@@ -20,7 +20,9 @@ def check_floating(preset: Wet) -> None:
         if preset.water is None or preset.liquid.model != "sph":
             raise LabError(f"{said}: a body that floats needs water of particles; add [water], or leave this out.")
         if preset.ship is not None or preset.axle is not None:
-            raise LabError(f"{said}: a body does not float in a tank that answers its load; leave out [ship] or [axle].")
+            raise LabError(
+                f"{said}: a body does not float in a tank that answers its load; leave out [ship] or [axle]."
+            )
         if preset.grains is not None and part.tank is None:
             raise LabError(f"{said}: a body does not float among grains; leave out [grains] or this.")
         _check_draught(preset, part, said)
