@@ -38,10 +38,10 @@ from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.air_checks import check_air
 from lab.preset.sections.water.checks import check_water
+from lab.preset.sections.water.floating import check_floating
 from lab.preset.sections.water.flow_checks import check_weight
 from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import Gauge, Water
-from lab.preset.sections.water.floating import check_floating
 from lab.preset.sections.water.solids import check_solids
 from lab.preset.sections.water.tanks import Pool, check_tanks, pools
 from solvers.fluid import given as fluid

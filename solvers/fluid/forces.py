@@ -73,6 +73,8 @@ class Forces:
                 p.store(p.eigenvalue_before, b, p.load(p.eigenvalue, b))
             if ti.static(c.tense):
                 self.tension.update_state(b)
+            if ti.static(self.bodies.hulls.count > 0):
+                self.bodies.hulls.note_block(b)
 
     @ti.func
     def update_both(self, b, s):

@@ -258,11 +258,16 @@ class Lists:
 
     @ti.func
     def visible(self, b, entry, apart: ti.template(), part: ti.template()):
-        """The share of an entry's particle that a block b sees past the plates, at a part of the step."""
+        """The share of an entry's particle that a block b sees past plates and hulls, at a part of the step."""
         p, jb, lane = self.particles, self.block_of(entry), self.lane_of(entry)
-        if ti.static(len(self.bodies.visibility.plates) > 0):
+        if ti.static(len(self.bodies.visibility.plates) + self.bodies.hulls.count > 0):
             place = [ti.cast(p.place[a][jb, lane] + self.seen(entry, a), p.real) for a in ti.static(range(p.axes))]
-            return self.bodies.visibility.share(b, jb, place, apart, part)
+            share = p.ones()
+            if ti.static(len(self.bodies.visibility.plates) > 0):
+                share *= self.bodies.visibility.share(b, jb, place, apart, part)
+            if ti.static(self.bodies.hulls.count > 0):
+                share *= self.bodies.hulls.share(b, jb, lane, place, apart)
+            return share
         else:
             return ti.cast(1.0, p.real)
 

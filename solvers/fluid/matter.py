@@ -207,6 +207,7 @@ class WaterMatter(Matter):
         self.sound_switch.use(False, self.scene.gravity)
         p.put(self.fluid.particles, self.water)
         p.put_walls(*self.wall_points, self.bodies.solids)
+        self.bodies.hulls.place()
         for field in (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind, self.lists.last):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
@@ -243,6 +244,7 @@ class WaterMatter(Matter):
             **self.gauges.read_and_reset(),
             **self.edges.read_and_reset(),
             **self.bodies.read_and_reset(thick, by_parts),
+            **self.bodies.hulls.observe(time, thick),
         }
         np.copyto(self.start, residual(rows, 0.0), where=np.isnan(self.start))
         return rows

@@ -48,6 +48,7 @@ class Part:
     motions: ClassVar = ()
     tank: ClassVar = 0
     free: ClassVar = None
+    hull: ClassVar = None
 
     @property
     def way(self) -> float:
@@ -86,18 +87,39 @@ class Free:
 
 
 @dataclass(frozen=True)
+class Opening:
+    """A hole through the wall of a hull, between two points (m) in it as drawn; its cover is gone from `opens` (s) on."""
+
+    ends: tuple[tuple[float, float], tuple[float, float]]
+    opens: float = 0.0
+
+
+@dataclass(frozen=True)
+class Hull:
+    """A body that is hollow: its `rooms` are simple polygons (m) as drawn, `wall` (m) what is between them and without.
+
+    A wall between two rooms is as thick. `openings` lead through the walls.
+    """
+
+    wall: float
+    rooms: tuple[tuple[tuple[float, float], ...], ...]
+    openings: tuple[Opening, ...] = ()
+
+
+@dataclass(frozen=True)
 class Body(Part):
     """A part with motions of its own; in water a thin plate between two points or, if it is `closed`, a solid polygon.
 
     Its `motions` are those that a tank may have (`solvers.motion`), in the tank's frame, from the drawn place on; they
     follow its `move`. They begin with the tank's own motion. `tank` is the number of the tank in which it stands. One
-    that is `free` moves as what pushes it says; it has no motions.
+    that is `free` moves as what pushes it says; it has no motions. A solid one with a `hull` is hollow.
     """
 
     closed: bool = False
     motions: tuple = ()
     tank: int = 0
     free: Free | None = None
+    hull: Hull | None = None
 
     def fastest(self) -> float:
         """Bound on the speed (m/s) of its corners."""

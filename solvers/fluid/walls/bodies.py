@@ -6,6 +6,7 @@ import taichi as ti
 from solvers.fluid.given import Water
 from solvers.fluid.order import Order
 from solvers.fluid.state import UNUSED, Particles, WorkRanges
+from solvers.fluid.walls.hulls import Hulls
 from solvers.fluid.walls.solids import Solids
 from solvers.fluid.walls.visibility import Visibility
 from solvers.machine.state import Axis, State, padded, roomy
@@ -39,6 +40,7 @@ class Bodies:
         self.solids, self.reach = Solids(parts, water, lanes, wet), water.reach
         self.rows = len(self.solids.places)
         self.visibility = Visibility(arrays, parts, water, scene, wet)
+        self.hulls = Hulls(arrays, pieces, self.solids, water, USUAL // lanes)
         self.fastest, self.moving, self.floats = pieces.fastest, pieces.moving, pieces.floats
         self.slips = water.slip
         if parts:
@@ -68,6 +70,7 @@ class Bodies:
             first = np.array([particles.walls - self.rows])  # of the wall blocks
             self.first = arrays.under("bodies").holding("first", first, "one", ti.i32)
             self.visibility.join(arrays, particles, padded(self.solids.owner, self.room), self.first, order)
+            self.hulls.join(arrays, particles, poses, self.first)
             own, each = arrays.under("bodies"), (units.axis, Axis("part", self.count))
             names = "impulse_y", "impulse_z", "impulse_turn", "work", "power"
             *self.impulse, self.work, self.power = own.reals(each, *names, kind=own.exact)
@@ -85,6 +88,8 @@ class Bodies:
         self.pieces.note(w, t, dt)
         if ti.static(len(self.visibility.plates) > 0):
             self.visibility.note(w, self.poses)
+        if ti.static(self.hulls.openings > 0):
+            self.hulls.note(w, t)
 
     @ti.func
     def place(self, u, part: ti.template()):

@@ -8,7 +8,7 @@ import numpy as np
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR, UNUSED
 from solvers.fluid.walls.layers import deep, faces, firm, layers, offset_from, sharp, straight
-from solvers.tank.parts import Part
+from solvers.tank.parts import Opening, Part
 
 TOUCHES = 0.25  # spacings between a plate's end and a wall or a part from which on no water passes between them
 STRIP = 4.0  # spacings: height of the strips by which the wall particles of a body are cut into blocks
@@ -104,19 +104,17 @@ class Solids:
     def __init__(self, parts: Sequence[Part], water: Water, lanes: int, wet: Sequence[bool]):
         rows = int(np.ceil(water.reach / water.spacing - 1e-9))
         self.prolongs = prolonging(parts, water.spacing)
-        none = (*(np.zeros((0, lanes, *more)) for more in ((2,), (), (), (2,), (2,), (2,), ())),)
+        self.openings = openings_of(parts)
+        none = (*(np.zeros((0, lanes, *more)) for more in ((2,), (), (), (2,), (2,), (2,), (), (), ())),)
         found = [self._part(k, parts, water, rows, lanes) if of_water else none for k, of_water in enumerate(wet)]
         places = [place for place, *_ in found]
         self.sides = [sides_of(part.points, is_solid(part)) for part in parts]
         self.ends = np.cumsum([0, *(len(place) for place in places)])
         blocks = int(self.ends[-1])
-        self.places = np.concatenate([*places, np.zeros((0, lanes, 2))])
-        self.volumes = np.concatenate([*(volume for _, volume, *_ in found), np.zeros((0, lanes))])
-        self.firm = np.concatenate([*(held for _, _, held, *_ in found), np.zeros((0, lanes))])
-        self.along = np.concatenate([*(along for *_, along, _, _, _ in found), np.zeros((0, lanes, 2))])
-        self.straight = np.concatenate([*(away for *_, away, _, _ in found), np.zeros((0, lanes, 2))])
-        self.sliding = np.concatenate([*(slides for *_, slides, _ in found), np.zeros((0, lanes, 2))])
-        self.deep = np.concatenate([*(off for *_, off in found), np.zeros((0, lanes))])
+        columns = zip(none, *found, strict=True)
+        self.places, self.volumes, self.firm, *further = (np.concatenate(column) for column in columns)
+        self.along, self.straight, self.sliding, self.deep, rooms, holes = further
+        self.rooms, self.holes = rooms.astype(int), holes.astype(int)
         self.owner = np.repeat(np.arange(len(parts)), np.diff(self.ends))
         used = self.volumes > 0.0
         self.numbers = np.where(used, np.arange(blocks * lanes).reshape(blocks, lanes), UNUSED)
@@ -124,13 +122,14 @@ class Solids:
         self.radius = np.where(used, away, 0.0).max(axis=1, initial=0.0)
 
     def _part(self, k: int, parts: Sequence[Part], water: Water, rows: int, lanes: int) -> tuple[np.ndarray, ...]:
-        """Of the wall particles of part k, in blocks of lanes, what `Solids` has from `places` to `deep`."""
-        part, spacing, drawn = parts[k], water.spacing, np.asarray(parts[k].points, dtype=float)
+        """Of the wall particles of part k, in blocks of lanes, what `Solids` has from `places` to `holes`."""
+        part, spacing = parts[k], water.spacing
         if is_solid(part):
-            corners = counter_clockwise(part.points)
-            points, volumes, depths = layers(corners[::-1], spacing, rows)
-            along = faces(points, corners)
-            slides = straight(points, along, sharp(corners[::-1]), water.reach)
+            faces_of = [(0, counter_clockwise(part.points)[::-1], np.asarray(part.points, dtype=float))]
+            faces_of += [(number, room, room) for number, room in rooms_of(parts, k)]
+            found = [behind(*face, self.openings[k], water, rows) for face in faces_of]
+            columns = map(np.concatenate, zip(*found, strict=True))
+            points, volumes, depths, along, away, slides, off, rooms, holes = columns
         else:  # of plates that go on as one, those that are nearest to this one
             members = np.flatnonzero(self.prolongs[k])
             drawn = line_of(parts, members)
@@ -139,10 +138,59 @@ class Solids:
             points, volumes, depths = (one[mine] for one in whole)
             way = drawn[1] - drawn[0]
             along = slides = np.tile(way / np.hypot(*way), (len(points), 1))
+            away, off = straight(points, along, drawn, water.reach), deep(points, along, drawn)
+            rooms = holes = np.zeros(len(points))
         strip = np.floor((points[:, 1] - points[:, 1].min()) / (STRIP * spacing))
         order = np.lexsort((points[:, 0], strip))
         more = -len(points) % lanes
-        away, off = straight(points, along, drawn, water.reach), deep(points, along, drawn)
-        columns = (points, FAR), *((one, 0.0) for one in (volumes, firm(depths, spacing), along, away, slides, off))
+        rest = volumes, firm(depths, spacing), along, away, slides, off, rooms, holes
+        columns = (points, FAR), *((one, 0.0) for one in rest)
         filled = (np.concatenate([one[order], np.full((more, *one.shape[1:]), fill)]) for one, fill in columns)
         return tuple(one.reshape(-1, lanes, *one.shape[1:]) for one in filled)
+
+
+def behind(
+    room: int, corners: np.ndarray, drawn: np.ndarray, openings: Sequence, water: Water, rows: int
+) -> tuple[np.ndarray, ...]:
+    """Wall particles behind the face of a polygon (m, 2) m, clockwise round a body, else round a room of this number.
+
+    `drawn` is the same polygon as it is drawn. Their places, volumes, depths, and what `Solids` has from `along` to
+    `holes`; none of them slides near the ends of openings, as near those of plates.
+    """
+    points, volumes, depths = layers(corners, water.spacing, rows)
+    along, holes = faces(points, corners if room else corners[::-1]), np.zeros(len(points))
+    foot = points - offset_from(points, corners)
+    for number, opening, wall in openings:
+        holes[in_opening(foot, opening, wall)] = number
+    ends = np.concatenate([np.zeros((0, 2)), *(np.array(opening.ends) for _, opening, _ in openings)])
+    away = straight(points, along, np.concatenate([drawn, ends]), water.reach)
+    slides = straight(points, along, np.concatenate([sharp(corners), ends]), water.reach)
+    off, seen_from = deep(points, along, drawn), np.full(len(points), float(room))
+    return points, volumes, depths, along, away, slides, off, seen_from, holes
+
+
+def rooms_of(parts: Sequence[Part], k: int) -> list[tuple[int, np.ndarray]]:
+    """The rooms of part k, if it is a hull, by their numbers among those of all parts, from 1 on: corners (m, 2) m."""
+    before = sum(len(part.hull.rooms) for part in parts[:k] if part.hull)
+    rooms = parts[k].hull.rooms if parts[k].hull else ()
+    return [(number, counter_clockwise(room)) for number, room in enumerate(rooms, start=before + 1)]
+
+
+def openings_of(parts: Sequence[Part]) -> list[list[tuple[int, Opening, float]]]:
+    """The openings in each part, each with its number among those of all parts, from 1 on, and the wall (m) there."""
+    found, number = [], 0
+    for part in parts:
+        mine = part.hull.openings if part.hull else ()
+        found.append([(number + n, opening, part.hull.wall) for n, opening in enumerate(mine, start=1)])
+        number += len(mine)
+    return found
+
+
+def in_opening(points: np.ndarray, opening: Opening, wall: float) -> np.ndarray:
+    """Which points (n, 2) m on the faces of a wall of this thickness (m) lie where an opening leads through it."""
+    start, end = np.array(opening.ends)
+    length = float(np.hypot(*(end - start)))
+    along = (end - start) / length
+    off = points - start
+    way, across = off @ along, off[:, 1] * along[0] - off[:, 0] * along[1]
+    return (way > 0.0) & (way < length) & (np.abs(across) < 1.01 * wall)
