@@ -25,8 +25,9 @@ class Hulls:
 
     s_r is the signed distance of the middle of the wall, negative in the room, b half the wall: no χ is in between but
     in an opening, where water passes from one room to another. A pair of particles i and
-    j counts with the share 1 − ½ Σ |χ_ri − χ_rj|, summed over the rooms and what is outside of all; one of water whose
-    line leads through an opening counts wholly, and round its ends over a smoothing length in part. Wall particles stand in two families, one behind each face of a wall and each with the χ of the room before it, and go on through
+    j counts with the share 1 − ½ Σ |χ_ri − χ_rj|, summed over the rooms and what is outside of all. Water that sees
+    water through an opening counts wholly, and within a smoothing length of its ends in part; so much less count the
+    wall particles that stand beyond the wall there, so that all shares are 1 together. Wall particles stand in two families, one behind each face of a wall and each with the χ of the room before it, and go on through
     the wall and beyond: so the wall may be thinner than the kernel's reach (own derivation). All sums have the same
     shares, so that pairs of forces stay equal and opposite. Where an opening is, wall particles stand for its cover
     until it opens.
@@ -51,6 +52,7 @@ class Hulls:
         self.circles = own.holding("rooms", np.array(circles), "room number")
         self.rows = roomy(len(solids.places), spared)
         self.hole = own.holding("hole", padded(solids.holes, self.rows), "row lane", ti.i32)
+        self.beyond = own.holding("beyond", padded(solids.beyond.astype(float), self.rows), "row lane")
         if holes:
             lines = np.array([line(opening, parts[k].hull, water.length) for k, _, opening, _ in holes])
             self.lines = own.holding("openings", lines, "opening number", own.exact)
@@ -141,18 +143,37 @@ class Hulls:
             off += ti.max(other, 0.0 - other)
             outside += other
         hidden = 0.5 * (off + ti.max(outside, 0.0 - outside))
+        share = 1.0 - hidden
         if ti.static(self.openings > 0):
-            of_water = b % p.stride < p.fluid_blocks and jb % p.stride < p.fluid_blocks
-            if of_water and hidden.sum() > 0.0:
+            own, other = self.row(b), self.row(jb)
+            behind = p.zeros()  # 1 for what stands beyond the wall
+            if own >= 0:
+                behind += p.load(self.beyond, own)
+            if other >= 0:
+                behind += self.beyond[other, lane]
+            if own >= 0 or other >= 0:
+                hidden = behind
+            if hidden.sum() > 0.0:
+                closed = p.ones()
                 for n in ti.static(range(self.openings)):
-                    hidden *= 1.0 - self.through(n, b // p.stride, place, apart)
-        return 1.0 - hidden
+                    closed *= 1.0 - self.through(n, b // p.stride, place, apart)
+                if own >= 0 or other >= 0:
+                    share *= 1.0 - behind * (1.0 - closed)
+                else:
+                    share = 1.0 - hidden * closed
+        return share
+
+    @ti.func
+    def row(self, b):
+        """The row of a block among the bodies' wall blocks; below zero for any other block."""
+        p = self.particles
+        return b % p.stride - (p.fluid_blocks + self.first[0])
 
     @ti.func
     def through(self, n: ti.template(), w, place: ti.template(), apart: ti.template()):
         """Whether the line from a place to each of others, `apart` from it, comes nearest to a wall in an opening, 0 to 1.
 
-        It is 1 within, and fades over a smoothing length round the ends of the opening.
+        It is 1 within, and fades over a smoothing length from the ends of the opening on, in the wall.
         """
         p, k = self.particles, ti.static(self.hole_owners[n])
         found = p.zeros()
@@ -170,7 +191,7 @@ class Hulls:
             share = ti.max(0.0, ti.min(1.0, (0.0 - across) / least))
             way = dot(off, along) + share * dot(apart, along)
             sharp, length = ti.cast(self.lines[n, SHARP], p.real), ti.cast(self.lines[n, LENGTH], p.real)
-            deep = ti.max(0.0, ti.min(1.0, ti.min(way, length - way) * sharp + 0.5))
+            deep = ti.max(0.0, ti.min(1.0, ti.min(way, length - way) * sharp + 1.0))
             found = deep * deep * (3.0 - 2.0 * deep)
         return found
 

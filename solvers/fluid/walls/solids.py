@@ -105,7 +105,7 @@ class Solids:
         rows = int(np.ceil(water.reach / water.spacing - 1e-9))
         self.prolongs = prolonging(parts, water.spacing)
         self.openings = openings_of(parts)
-        none = (*(np.zeros((0, lanes, *more)) for more in ((2,), (), (), (2,), (2,), (2,), (), (), ())),)
+        none = (*(np.zeros((0, lanes, *more)) for more in ((2,), (), (), (2,), (2,), (2,), (), (), (), ())),)
         found = [self._part(k, parts, water, rows, lanes) if of_water else none for k, of_water in enumerate(wet)]
         places = [place for place, *_ in found]
         self.sides = [sides_of(part.points, is_solid(part)) for part in parts]
@@ -113,7 +113,7 @@ class Solids:
         blocks = int(self.ends[-1])
         columns = zip(none, *found, strict=True)
         self.places, self.volumes, self.firm, *further = (np.concatenate(column) for column in columns)
-        self.along, self.straight, self.sliding, self.deep, rooms, holes = further
+        self.along, self.straight, self.sliding, self.deep, rooms, holes, self.beyond = further
         self.rooms, self.holes = rooms.astype(int), holes.astype(int)
         self.owner = np.repeat(np.arange(len(parts)), np.diff(self.ends))
         used = self.volumes > 0.0
@@ -130,6 +130,7 @@ class Solids:
             found = [behind(*face, self.openings[k], water, rows) for face in faces_of]
             columns = map(np.concatenate, zip(*found, strict=True))
             points, volumes, depths, along, away, slides, off, rooms, holes = columns
+            beyond = depths > (part.hull.wall if part.hull else np.inf)
         else:  # of plates that go on as one, those that are nearest to this one
             members = np.flatnonzero(self.prolongs[k])
             drawn = line_of(parts, members)
@@ -139,11 +140,11 @@ class Solids:
             way = drawn[1] - drawn[0]
             along = slides = np.tile(way / np.hypot(*way), (len(points), 1))
             away, off = straight(points, along, drawn, water.reach), deep(points, along, drawn)
-            rooms = holes = np.zeros(len(points))
+            rooms = holes = beyond = np.zeros(len(points))
         strip = np.floor((points[:, 1] - points[:, 1].min()) / (STRIP * spacing))
         order = np.lexsort((points[:, 0], strip))
         more = -len(points) % lanes
-        rest = volumes, firm(depths, spacing), along, away, slides, off, rooms, holes
+        rest = volumes, firm(depths, spacing), along, away, slides, off, rooms, holes, beyond
         columns = (points, FAR), *((one, 0.0) for one in rest)
         filled = (np.concatenate([one[order], np.full((more, *one.shape[1:]), fill)]) for one, fill in columns)
         return tuple(one.reshape(-1, lanes, *one.shape[1:]) for one in filled)
