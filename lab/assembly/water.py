@@ -7,6 +7,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
+from lab.preset.sections.bodies import depths_of, rooms_of
 from lab.preset.sections.parts import parts_of
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
 from lab.preset.sections.water.tanks import Pool, outline_at
@@ -64,7 +65,25 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
             return with_air(drops, _air_of(preset, water))
     except ValueError as error:
         raise LabError(f"water.spacing: {error}; take smaller particles.") from None
-    return _cut_off(preset, pool, drops, parts) if parts and not beside else drops
+    if parts and not beside:
+        drops = _cut_off(preset, pool, drops, parts)
+    return np.concatenate([drops, *in_rooms(preset, pool.number, water)])
+
+
+def in_rooms(preset: Preset, tank: int, water: Water) -> list[np.ndarray]:
+    """The particles (n,) of the water at rest in each room of the hulls in a tank. Raises LabError."""
+    found = []
+    for (name, part), solved in zip(preset.parts.items(), parts_of(preset), strict=True):
+        corners, depths_in = rooms_of(part), depths_of(part)
+        for room in corners if solved.tank == tank else ():
+            if depths_in[room] > 0.0:
+                level = corners[room][:, 1].min() + depths_in[room]
+                try:
+                    found.append(at_rest(corners[room], level, replace(water, start="lattice"), preset.run.gravity))
+                except ValueError as error:
+                    key = f"parts.{name}.rooms.{room}.depth"
+                    raise LabError(f"{key}: {error}; take smaller particles.") from None
+    return found
 
 
 def _set_going(preset: Preset, drops: np.ndarray) -> None:

@@ -46,7 +46,7 @@ def plots(beds: Sequence[Bed], hues: Sequence[tuple], series: Sequence[tuple] = 
     carried = any(bed.footage.sea or bed.footage.rail for bed in beds)
     moved = [_of_motion(beds, hues)] if not wet or carried else []
     return (moved + of_gauges)[:MOST_PLOTS] or [
-        _of_a_body(wet, hue) or _of_a_flow(wet, hue) or _of_the_centre(wet, hue)
+        _of_a_floating_body(wet, hue) or _of_a_body(wet, hue) or _of_a_flow(wet, hue) or _of_the_centre(wet, hue)
     ]
 
 
@@ -89,6 +89,16 @@ def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple], series: Sequence[t
                 plot.add(bed, scale * _measured(bed, quantity)[:, 0], hue.get(bed, palette.LINE))
         found.append(plot)
     return found
+
+
+def _of_a_floating_body(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot | None:
+    """How far the first floating body has turned."""
+    if not all(bed.footage.floating for bed in beds):
+        return None
+    plot = Plot(("time (s)", f"heel of {beds[0].footage.floating[0]} (deg)"))
+    for bed in reversed(beds):
+        plot.add(bed, np.rad2deg(_measured(bed, "body_place")[:, 0, 2]), hue.get(bed, palette.LINE))
+    return plot
 
 
 def _of_a_body(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot | None:

@@ -12,6 +12,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.cargo.looks import Stowage
 from lab.paint.painter import Edges
+from lab.paint.scene.bodies import bodies_of
 from lab.paint.scene.drive import drive_text
 from lab.paint.sea import Rail, Sea
 from lab.paint.water.basins import basins_of
@@ -60,6 +61,7 @@ class Footage:
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
+        self.bodies = bodies_of(recording.preset)
         self.sea, self.rail = Sea(recording.preset) if recording.preset.ship else None, None
         if recording.preset.axle:
             self.rail = Rail(recording.preset.axle, np.ptp(self.outline[:, 0]), self.series_time, series["axle_slide"])
@@ -74,6 +76,11 @@ class Footage:
     def protrudes(self) -> bool:
         """Whether anything that is drawn may stand out of the tank."""
         return bool(self.open_edges or self.parts or self.rail)
+
+    @property
+    def floating(self) -> tuple[str, ...]:
+        """The names of the bodies that float."""
+        return self._preset.bodies
 
     @property
     def afloat(self) -> np.ndarray:
@@ -225,10 +232,14 @@ class Bed:
         after, share = min(first + 1, len(values) - 1), frame - first
         return (1.0 - share) * values[first, self.world] + share * values[after, self.world]
 
+    def moved(self, points: np.ndarray, number: int, frame: float) -> np.ndarray:
+        """Points (m, 2) m of a part, as drawn, where they are in the tank frame in a frame."""
+        shift, turn = (self._between(values, frame)[number] for values in (self.footage.part, self.footage.part_turn))
+        return moved_line(points, shift, turn)
+
     def plates(self, frame: int) -> list[np.ndarray]:
-        """The moving parts, and a sliding mass, as polylines (m, 2) m in the tank frame at their places in a frame."""
-        moved, turn = (self._between(values, frame) for values in (self.footage.part, self.footage.part_turn))
-        lines = [moved_line(*part) for part in zip(self.footage.parts.values(), moved, turn, strict=True)]
+        """The parts, and a sliding mass, as polylines (m, 2) m in the tank frame at their places in a frame."""
+        lines = [self.moved(line, number, frame) for number, line in enumerate(self.footage.parts.values())]
         rail = self.footage.rail
         return lines + (
             rail.lines(self.world, float(np.interp(frame, np.arange(self.frames), self.footage.time))) if rail else []

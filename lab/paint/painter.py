@@ -16,7 +16,7 @@ from lab.paint.raster.base import (
 )
 from lab.paint.raster.grains import DIRECTIONS, Edges, paint_grains, to_discs
 from lab.paint.raster.lines import paint_strokes
-from lab.paint.raster.walls import off_outline, paint_plate, paint_tank
+from lab.paint.raster.walls import off_outline, paint_plate, paint_shape, paint_tank
 from lab.paint.raster.water import paint_below, paint_lines
 
 __all__ = [
@@ -37,6 +37,7 @@ __all__ = [
     "paint_grains",
     "paint_lines",
     "paint_plate",
+    "paint_shape",
     "paint_strokes",
     "paint_tank",
     "sort_into_bands",

@@ -22,6 +22,7 @@ from lab.preset.kept.content import MATTERS
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
 from lab.preset.sections.axle import Axle, check_axle
+from lab.preset.sections.bodies import rooms_of
 from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
@@ -115,6 +116,16 @@ class Preset:
     def bodies(self) -> tuple[str, ...]:
         """The names of the parts that float."""
         return tuple(name for name, part in self.parts.items() if part.floats)
+
+    @property
+    def rooms(self) -> tuple[str, ...]:
+        """The rooms of all hulls, by the hull's name and their own."""
+        return tuple(f"{name}.{room}" for name, part in self.parts.items() for room in rooms_of(part))
+
+    @property
+    def openings(self) -> tuple[str, ...]:
+        """The openings of all hulls, by the hull's name and their own."""
+        return tuple(f"{name}.{opening}" for name, part in self.parts.items() for opening in part.openings)
 
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:

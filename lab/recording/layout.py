@@ -89,13 +89,14 @@ def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quan
 
 
 def names_of(preset: "Preset | Content", parts: Iterable[str] = ()) -> dict[str, list[str]]:
-    """The names of a preset's gauges, of parts, and of those that float, by the owners of their quantities.
+    """The names of a preset's gauges, parts, those that float, rooms and openings, by the owners of their quantities.
 
     They are in the order of the columns of these quantities.
     """
     pressure, level, force = parted(preset.gauges)
-    bodies = [*preset.bodies]
-    return {"gauge": [*pressure], "level": [*level], "edge": [*force], "part": [*parts], "body": bodies}
+    gauges = {"gauge": [*pressure], "level": [*level], "edge": [*force]}
+    of_hulls = {"room": [*preset.rooms], "opening": [*preset.openings]}
+    return gauges | {"part": [*parts], "body": [*preset.bodies]} | of_hulls
 
 
 def sizes_of(

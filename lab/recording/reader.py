@@ -41,7 +41,19 @@ if TYPE_CHECKING:
     from lab.recording.contacts.table import Contacts
 
 # Arbitrary but distinct sizes, to compare shapes
-SIZES = dict(world=2, grain=3, part=5, water_particle=7, air_particle=19, gauge=11, level=13, edge=17, body=23)
+SIZES = dict(
+    world=2,
+    grain=3,
+    part=5,
+    water_particle=7,
+    air_particle=19,
+    gauge=11,
+    level=13,
+    edge=17,
+    body=23,
+    room=29,
+    opening=31,
+)
 TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 
 

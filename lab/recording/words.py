@@ -7,6 +7,8 @@ COUNTED = {  # what each axis counts, and the preset key that sets its size
     "world": "beds (run.repeats)",
     "part": "parts (parts.NAME)",
     "body": "floating bodies (parts.NAME.density)",
+    "room": "rooms of hulls (parts.NAME.wall)",
+    "opening": "openings of hulls (parts.NAME.openings.NAME)",
     "grain": "grains (grains.count)",
     "water_particle": "particles of water (water.spacing)",
     "air_particle": "particles of air (water.spacing)",
@@ -28,7 +30,8 @@ def recorded_by(name: object) -> str:
     if name in _names((*OF_MATTERS["air"].SERIES, *OF_MATTERS["air"].FRAMES)):
         return "; a preset with a table [air] records it."
     if name in of_water:
-        table = "gauges.NAME" if of_water[name].per in ("gauge", "level", "edge") else "water"
+        by_owner = {**dict.fromkeys(("gauge", "level", "edge"), "gauges.NAME"), "room": "parts.NAME.rooms.NAME"}
+        table = (by_owner | {"opening": "parts.NAME.openings.NAME"}).get(of_water[name].per, "water")
         return f"; a preset with a table [{table}] records it."
     if name in _names(series_of(afloat=False)):
         return "; it is in the series (record.series_rate)."

@@ -33,6 +33,8 @@ SERIES = (
     Quantity(
         "part_work", "J", label="work of each part on the water since the start, by its motion in the tank", per="part"
     ),
+    Quantity("room_water", "kg", label="mass of the water in each room of a hull", per="room"),
+    Quantity("opening_flow", "kg/s", label="water that flows into a hull through each opening", per="opening"),
     Quantity("level_depth", "m", label="depth of the water above the floor at each level gauge", per="level"),
 )
 # What the watch asks and no recording has: the number of a particle that has left the tank.

@@ -17,6 +17,8 @@ OWNERS = {
     "grain": ("world", "grain"),
     "part": ("world", "part"),
     "body": ("world", "body"),
+    "room": ("world", "room"),
+    "opening": ("world", "opening"),
     "water_particle": ("world", "water_particle"),
     "air_particle": ("world", "air_particle"),
     "gauge": ("world", "gauge"),

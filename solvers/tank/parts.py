@@ -88,7 +88,7 @@ class Free:
 
 @dataclass(frozen=True)
 class Opening:
-    """A hole through the wall of a hull, between two points (m) in it as drawn; its cover is gone from `opens` (s) on."""
+    """A hole through the wall of a hull, between two points (m) in it as drawn; it is covered until `opens` (s)."""
 
     ends: tuple[tuple[float, float], tuple[float, float]]
     opens: float = 0.0

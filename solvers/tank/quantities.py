@@ -1,7 +1,7 @@
 """What is known of the tank: how it moves and what loads it (`motion.sampler`), and its parts (`walls`).
 
-A tank on an axle has further ones (`motion.axle`), and so have bodies that float (`motion.free`). Files of quantities import no Taichi, for those who read recordings
-need none.
+A tank on an axle has further ones (`motion.axle`), and so have bodies that float (`motion.free`). Files of quantities
+import no Taichi, for those who read recordings need none.
 """
 
 from solvers.machine.quantity import Quantity, directions, freedoms

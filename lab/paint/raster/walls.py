@@ -48,6 +48,19 @@ def paint_tank(
         _paint_walls(picture, _edges(corners, open_edges), spans, whole_numbers(*box), wall, face, colours)
 
 
+def paint_shape(
+    picture: np.ndarray, camera: Camera, shapes: Sequence[np.ndarray], wall: float, wall_colour: tuple, colour: tuple
+) -> None:
+    """Paint what several polygons, each (m, 2) in m, enclose by the even–odd rule, and a wall (pixels) around it."""
+    corners = [camera.pixels(shape) for shape in shapes]
+    box = box_around(picture, np.concatenate(corners), wall)
+    if box[0] < box[2] and box[1] < box[3]:
+        edges = np.concatenate([_edges(of_shape) for of_shape in corners])
+        spans = np.empty((box[3] - box[1], 3 * len(edges)))
+        colours = rows_of(wall_colour, colour, wall_colour)
+        _paint_walls(picture, edges, spans, whole_numbers(*box), wall, wall, colours)
+
+
 def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness: float, colour: tuple) -> None:
     """Paint a polyline (m, 2) in m as a plate with round ends, `thickness` in pixels."""
     corners = camera.pixels(line)

@@ -11,8 +11,9 @@ from lab.paint.colours import Colouring, spread
 from lab.paint.footage import Bed
 from lab.paint.page.layout import TEXT, Box
 from lab.paint.page.theme import Theme
-from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.painter import Camera, Edges, paint_grains, paint_tank, to_discs
 from lab.paint.scene.backdrop import paint_sky
+from lab.paint.scene.bodies import paint_parts
 from lab.paint.scene.cells import Cells, Room, lay_cells
 from lab.paint.scene.drive import paint_arrow
 from lab.paint.scene.floating_ship import FloatingShip
@@ -21,7 +22,7 @@ from lab.paint.scene.ship import silhouette
 from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
 
-WALL, PLATE = 0.36, 0.3  # thickness in u
+WALL = 0.36  # thickness in u
 THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
 ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
@@ -175,8 +176,7 @@ class SceneView:
             colour = self.overlay.under(self._colouring.colours(bed, row))
             marks, *rest = self._colouring.style(bed, colour)
             found[k] = to_discs(camera, place, bed.radius, bed.angle(row)), colour, (self.overlay.under(marks), *rest)
-        for line in bed.plates(row):
-            paint_plate(picture, camera, line, PLATE * self._unit, self._theme.part)
+        paint_parts(picture, camera, bed, row, self._time[frame], self._unit, self._theme)
         return found
 
     def _paint_grains(self, picture: np.ndarray, grains: dict) -> None:

@@ -5,7 +5,7 @@ from typing import Any, get_args, get_origin
 
 from lab.preset import formats
 from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
-from lab.preset.kept.content import KINDS_OF_GAUGES, MATTERS, Content, Gauge
+from lab.preset.kept.content import INSIDE, KINDS_OF_GAUGES, MATTERS, Content, Gauge
 from lab.preset.kept.read import keys
 
 
@@ -20,8 +20,12 @@ def content(table: object) -> Content:
     has = {name: kept.get(name) is not None for name in (*MATTERS, "material", "ship", "axle")}
     repeats = kept.get("run", {}).get("repeats", 1)
     matters = tuple(name for name in MATTERS if has[name])
-    bodies = tuple(name for name, part in kept.get("parts", {}).items() if part.get("density") or part.get("mass"))
-    return Content(matters, has["material"], has["ship"], has["axle"], gauges, bodies, repeats)
+    parts = kept.get("parts", {}).items()
+    bodies = tuple(name for name, part in parts if part.get("density") or part.get("mass"))
+    rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))
+    openings = (f"{name}.{opening}" for name, part in parts for opening in part.get("openings") or ())
+    own = has["material"], has["ship"], has["axle"], gauges
+    return Content(matters, *own, bodies, tuple(rooms), tuple(openings), repeats)
 
 
 def _check(taken: Taken, value: object, key: str) -> None:

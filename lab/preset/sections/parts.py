@@ -5,19 +5,16 @@ from dataclasses import dataclass, make_dataclass
 from math import isfinite
 from typing import Annotated
 
-import numpy as np
-
 from lab.base.errors import LabError
 from lab.preset.outline import MOST_CORNERS, Point
+from lab.preset.sections import bodies
 from lab.preset.sections.history import Record, check_record, check_start
 from lab.preset.units import needed, show
-from solvers.machine.marks import Doc, Interval, Unit
+from solvers.machine.marks import Doc
 from solvers.motion import MOTIONS
 from solvers.tank import parts as solved
-from solvers.tank.outline import moments
 
 MOST_PARTS = 50
-FREE = "centre", "inertia", "release"  # keys of bodies that float alone
 
 
 @dataclass(frozen=True)
@@ -34,7 +31,7 @@ class PartGroup(solved.Part):
     @property
     def floats(self) -> bool:
         """Whether it moves freely."""
-        return self.density is not None or self.mass is not None
+        return bodies.floats(self)
 
     @property
     def moves(self) -> dict[str, object]:
@@ -55,57 +52,14 @@ class PartGroup(solved.Part):
     def solved(self, tank: int = 0, thickness: float = 1.0) -> solved.Body:
         """The part as the solver takes it, in the tank of this number, of a `thickness` (m)."""
         motions, move = tuple(self.moves.values()), (self.move, self.start, self.speed, self.acceleration)
-        free = self.freedom(thickness) if self.floats else None
-        return solved.Body(self.points, *move, self.closed, motions, tank, free)
-
-    def freedom(self, thickness: float) -> "solved.Free":
-        """What moves freely: its mass, inertia and centre, those of an even body of a `thickness` (m) unless given."""
-        area, centre, polar = moments(np.array(self.points))  # with the sign of the direction in which it is drawn
-        mass = self.density * abs(area) * thickness if self.mass is None else self.mass
-        inertia = mass * polar / area if self.inertia is None else self.inertia
-        return solved.Free(mass, inertia, self.centre or centre, self.release)
+        free, hull = bodies.freedom(self, thickness), bodies.hull_of(self)
+        return solved.Body(self.points, *move, self.closed, motions, tank, free, hull)
 
 
 WHERE = "The tank in which it stands, by its name in [tanks]; by default it is [tank]."
 KEYS = [("closed", Annotated[bool, Doc("Whether it is a solid body.")], False)]
 KEYS.append(("tank", Annotated[str | None, Doc(WHERE)], None))
-KEYS += [
-    (
-        "density",
-        Annotated[float | None, Unit("kg/m^3"), Interval(gt=0), Doc("Its mean density, of a body that floats.")],
-        None,
-    ),
-    (
-        "mass",
-        Annotated[
-            float | None,
-            Unit("kg"),
-            Interval(gt=0),
-            Doc("Its mass, of a body that floats, in a slab as thick as the tank; instead of its density."),
-        ],
-        None,
-    ),
-    (
-        "centre",
-        Annotated[Point | None, Unit("m"), Doc("Its centre of mass as drawn; by default that of an even body.")],
-        None,
-    ),
-    (
-        "inertia",
-        Annotated[
-            float | None,
-            Unit("kg m^2"),
-            Interval(gt=0),
-            Doc("Its moment of inertia about the centre of mass; by default that of an even body."),
-        ],
-        None,
-    ),
-    (
-        "release",
-        Annotated[float, Unit("s"), Interval(ge=0), Doc("When it is let go; until then it stands in the tank.")],
-        0.0,
-    ),
-]
+KEYS += bodies.KEYS
 KEYS += [(name, Annotated[kind | None, Doc(f"Its {name}.")], None) for name, kind in MOTIONS.items()]
 KEYS.append(("history", Annotated[Record | None, Doc("Its motion from a file.")], None))
 Part = make_dataclass("Part", KEYS, bases=(PartGroup,), frozen=True)
@@ -130,7 +84,7 @@ def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], tanks: Mapp
             others = f"one of {', '.join(tanks)}" if tanks else "no further tanks here"
             raise LabError(f"parts.{name}.tank: is {part.tank!r}, and there are {others}; leave it out for [tank].")
         _check_motions(part, f"parts.{name}", _larger_side(outline))
-        for key, fault in _faults_of_freedom(part):
+        for key, fault in bodies.faults(part):
             raise LabError(f"parts.{name}.{key}: {fault}.")
 
 
@@ -150,21 +104,6 @@ def _check_motions(part: Part, key: str, side: float) -> None:
         motion = getattr(part, name)
         if motion and motion.phase:
             raise LabError(f"{key}.{name}.phase: a part starts where it is drawn; leave the phase out.")
-
-
-def _faults_of_freedom(part: Part) -> Iterator[tuple[str, str]]:
-    """The keys at fault of a body that floats, or that say something of one where none does."""
-    if not part.floats:
-        for key in FREE:
-            if getattr(part, key):
-                yield key, "goes with a body that floats; give its density, or leave this out"
-        return
-    if part.mass is not None and part.density is not None:
-        yield "mass", "the density says it already; give one of the two"
-    if not part.closed:
-        yield "closed", "a body that floats is solid; set closed = true, or leave out its density"
-    for key in part.moves or (["move"] if part.way else []):
-        yield key, "a body that floats moves as what pushes it says; leave this out, or its density"
 
 
 def _faults(part: Part, outline: Sequence[Point]) -> Iterator[tuple[str, str]]:

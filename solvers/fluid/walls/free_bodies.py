@@ -1,4 +1,4 @@
-"""How the water answers the acceleration of free bodies at once: the pressures of their wall particles follow from it."""
+"""How water answers the acceleration of free bodies at once: the pressures of wall particles follow from it."""
 
 import taichi as ti
 

@@ -24,13 +24,13 @@ class Hulls:
     """χ_r = S(½ − s_r/2b): in which room r a particle of water is, 1 within and 0 without, S(x) = x² (3 − 2x).
 
     s_r is the signed distance of the middle of the wall, negative in the room, b half the wall: no χ is in between but
-    in an opening, where water passes from one room to another. A pair of particles i and
-    j counts with the share 1 − ½ Σ |χ_ri − χ_rj|, summed over the rooms and what is outside of all. Water that sees
-    water through an opening counts wholly, and within a smoothing length of its ends in part; so much less count the
-    wall particles that stand beyond the wall there, so that all shares are 1 together. Wall particles stand in two families, one behind each face of a wall and each with the χ of the room before it, and go on through
-    the wall and beyond: so the wall may be thinner than the kernel's reach (own derivation). All sums have the same
-    shares, so that pairs of forces stay equal and opposite. Where an opening is, wall particles stand for its cover
-    until it opens.
+    in an opening, where water passes from one room to another. A pair of particles i and j counts with the share
+    1 − ½ Σ |χ_ri − χ_rj|, summed over the rooms and what is outside of all. Wall particles stand in two families, one
+    behind each face of a wall and each with the χ of the room before it, and go on through the wall and beyond: so the
+    wall may be thinner than the kernel's reach (own derivation). Water that sees water through an opening counts
+    wholly, and within a smoothing length of its ends in part; so much less count there the wall particles that stand
+    beyond the wall, so that all shares are 1 together. All sums have the same shares, and pairs of forces stay equal
+    and opposite. Where an opening is, wall particles stand for its cover until it opens.
 
     Limits: walls of half a spacing at least; the rim of an opening is rounded over the wall's thickness, as each family
     sees there half of the water.
@@ -171,7 +171,7 @@ class Hulls:
 
     @ti.func
     def through(self, n: ti.template(), w, place: ti.template(), apart: ti.template()):
-        """Whether the line from a place to each of others, `apart` from it, comes nearest to a wall in an opening, 0 to 1.
+        """Whether lines from a place to others, `apart` from it, come nearest to the wall in an opening, 0 to 1.
 
         It is 1 within, and fades over a smoothing length from the ends of the opening on, in the wall.
         """
@@ -183,8 +183,8 @@ class Hulls:
             t = [ti.cast(self.lines[n, ALONG_Y], p.real), ti.cast(self.lines[n, ALONG_Z], p.real)]
             along = [c * t[0] - s * t[1], s * t[0] + c * t[1]]
             o = [ti.cast(self.pieces.poses[w, k, Y + a], p.real) for a in ti.static(range(2))]
-            l = [ti.cast(self.lines[n, START_Y], p.real), ti.cast(self.lines[n, START_Z], p.real)]
-            off = [place[0] - o[0] - (c * l[0] - s * l[1]), place[1] - o[1] - (s * l[0] + c * l[1])]
+            start = [ti.cast(self.lines[n, START_Y], p.real), ti.cast(self.lines[n, START_Z], p.real)]
+            off = [place[0] - o[0] - (c * start[0] - s * start[1]), place[1] - o[1] - (s * start[0] + c * start[1])]
             beyond = apart[1] * along[0] - apart[0] * along[1]
             across = off[1] * along[0] - off[0] * along[1]
             least = ti.select(beyond * beyond > 1e-30, beyond, p.ones())

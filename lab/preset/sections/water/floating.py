@@ -3,13 +3,12 @@
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.sections.bodies import draught
 from lab.preset.sections.parts import PartGroup
 from lab.preset.sections.water.liquid import Wet
 from lab.preset.units import show
-from solvers.tank.outline import area_below, moments
 
 SHALLOWEST = 2.0  # spacings: the least draught of a body that particles carry
-HALVINGS = 60
 
 
 def check_floating(preset: Wet) -> None:
@@ -29,16 +28,12 @@ def check_floating(preset: Wet) -> None:
 
 
 def _check_draught(preset: Wet, part: PartGroup, key: str) -> None:
-    """Raise LabError for a body that floats on too few particles, upright as it is drawn."""
-    corners, spacing = np.array(part.points), preset.liquid.spacing
-    area = abs(moments(corners)[0])
-    under = part.solved(0, preset.thickness).free.mass / (preset.water.density * preset.thickness)
-    if under >= area:
-        return
-    low, high = 0.0, float(np.ptp(corners[:, 1]))
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if abs(area_below(corners, middle)) < under else (low, middle)
-    if high < SHALLOWEST * spacing:
-        least = f"{high / spacing:.2g} spacings, and {SHALLOWEST:g} are needed"
-        raise LabError(f"{key}: this body floats {show(high, 'm')} deep, {least}; take smaller particles.")
+    """Raise LabError for a hull that sinks, and for a body that floats on too few particles, upright as it is drawn."""
+    spacing = preset.liquid.spacing
+    mass = part.solved(0, preset.thickness).free.mass
+    deep = draught(part, mass / (preset.water.density * preset.thickness))
+    if deep == np.inf and part.wall is not None:
+        raise LabError(f"{key}: this hull is heavier than the water that it can displace; make it lighter.")
+    if deep < SHALLOWEST * spacing:
+        least = f"{deep / spacing:.2g} spacings, and {SHALLOWEST:g} are needed"
+        raise LabError(f"{key}: this body floats {show(deep, 'm')} deep, {least}; take smaller particles.")

@@ -17,6 +17,7 @@ from solvers.tank.tank import Tank as Outline
 THINNEST = (
     4.0  # smoothing lengths: the least thickness at which no wall particle of a body is seen from both of its sides
 )
+THINNEST_WALL = 0.5  # spacings, of a hull
 LOOKS = 41  # places at which a motion is looked at
 ALONG = 33  # points at which a part's sides are looked at
 NEAR = 1e-3  # of the tank's larger side: how far a part may stand in a wall
@@ -33,6 +34,9 @@ def check_solids(preset: liquid.Wet) -> None:
             continue
         if part.closed:
             _check_body(part, 2.0 * preset.liquid.reach, key)
+            if part.wall is not None and part.wall < THINNEST_WALL * preset.liquid.spacing:
+                least = show(THINNEST_WALL * preset.liquid.spacing, "m")
+                raise LabError(f"{key}.wall: it is thinner than half a spacing, {least}; take smaller particles.")
         elif len(part.points) != 2:
             remedy = "give two points, or set closed = true for a solid body"
             raise LabError(f"{key}.points: a plate in water is straight (got {len(part.points)} points); {remedy}.")
