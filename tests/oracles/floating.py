@@ -8,7 +8,7 @@ from solvers.fluid.given import Fluid, Water
 from solvers.fluid.start.parts import clear_of
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from solvers.tank.parts import Body, Free
+from solvers.tank.parts import Body, Free, Hull, Opening
 from tests.oracles.water import GRAVITY, box, lattice
 
 DENSITY = 1000.0
@@ -50,7 +50,8 @@ def momentum(run: Simulation) -> np.ndarray:
     p, bodies = run.water.particles, run.parts.bodies
     mass, *velocity = (values[0] for values in p.read(p.mass, *p.velocity))
     of_water = np.array([mass @ along for along in velocity])
-    of_bodies = np.array([field.to_numpy()[0] @ bodies.rows[:, 0] for field in bodies.velocity[:2]])
+    own = bodies.velocity[:2] if bodies.count else ()
+    of_bodies = np.array([field.to_numpy()[0] @ bodies.rows[:, 0] for field in own] or [0.0, 0.0])
     return run.scene.tanks[0].thickness * of_water + of_bodies
 
 
@@ -58,3 +59,41 @@ def weight(run: Simulation) -> float:
     """Weight (N) of the water and the bodies of the first world."""
     p = run.water.particles
     return GRAVITY * (run.scene.tanks[0].thickness * p.read(p.mass)[0][0].sum() + run.parts.bodies.rows[:, 0].sum())
+
+
+def rectangle(low: tuple[float, float], high: tuple[float, float]) -> tuple[tuple[float, float], ...]:
+    """Corners of an upright rectangle, counter-clockwise."""
+    return (low, (high[0], low[1]), high, (low[0], high[1]))
+
+
+def hull(
+    wall: float = 1.0,
+    inside: float = 0.0,
+    hole: float = 0.0,
+    opens: float = 0.0,
+    spacing: float = 0.05,
+    depth: float = 1.0,
+    keel: float = 0.4,
+    free: Free | None = None,
+    **changes,
+) -> Scene:
+    """A hull, 1 m wide and high, its keel so high (m) over the floor of a tank 2 m wide with water of a `depth` (m).
+
+    Its walls are `wall` spacings thick; within is water up to `inside` (m) over its floor, in which a `hole` (m) wide
+    opens after a while (s).
+    """
+    thick, sound = wall * spacing, 10.0 * sqrt(GRAVITY * depth)
+    outer, room = rectangle((-0.5, keel), (0.5, keel + 1.0)), rectangle((thick - 0.5, keel + thick), (0.5 - thick, 1.3))
+    middle = keel + 0.5 * thick
+    openings = (Opening(((-0.5 * hole, middle), (0.5 * hole, middle)), opens),) if hole else ()
+    body = Body(outer, closed=True, free=free, hull=Hull(thick, (room,), openings))
+    drops = lattice(2.0, depth, spacing, sound)
+    drops = drops[:, clear_of(drops["position"][0], (body,), spacing)]
+    if inside:
+        within = lattice(1.0 - 2.0 * thick, inside, spacing, sound)
+        within["position"][..., 1] += keel + thick
+        drops = np.concatenate([drops, within], axis=1)
+    of_water = {name: changes.pop(name) for name in list(changes) if name in Water.__dataclass_fields__}
+    water = Water(**{"spacing": spacing, "sound_speed": sound, "density": DENSITY} | of_water)
+    given = {"outline": box(2.0, 2.0), "matters": (Fluid(water, drops),), "parts": (body,), "gravity": GRAVITY}
+    return Scene(**{**given, "thickness": 1.0, **changes})
