@@ -14,7 +14,6 @@ from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
 from solvers.matters import context_of, made
 from solvers.motion.carrier import make_carrier
-from solvers.motion.free import FreeBodies
 from solvers.motion.moved import make_pieces
 from solvers.motion.sampler import Sampler
 from solvers.scene import Scene
@@ -80,16 +79,15 @@ class Simulation:
         """Make the arrays and the objects whose kernels work on them."""
         scene, worlds = self.scene, self.scene.worlds
         self.arrays = arrays = State(scene.precision)
-        self.parts = make_pieces(arrays, scene.parts, worlds)
-        self.walls = Walls(arrays, scene.tanks, self.parts, scene.apart)
         self.carrier = make_carrier(arrays, scene, self.dt)
-        self.parts.join(FreeBodies(arrays, self.parts, self.carrier, len(scene.tanks)))
+        self.parts = make_pieces(arrays, scene.parts, self.carrier, worlds, len(scene.tanks))
+        self.walls = Walls(arrays, scene.tanks, self.parts, scene.apart)
         context = context_of(self)
         matters = made(scene, context)
         self.matters = {matter.name: matter for matter in matters}
         loads = [matter.load for matter in matters]
-        self.carrier.bear(loads)
-        self.parts.bodies.bear(loads)
+        for carrier in (self.carrier, self.parts.bodies):
+            carrier.bear(loads)
         self.clock = Clock(arrays, context.units(max((matter.in_bands for matter in scene.matters), default=0)))
         sequence = Sequence(matters, self.carrier, self.parts)
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)

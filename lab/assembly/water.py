@@ -7,8 +7,8 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
-from lab.preset.sections.bodies import depths_of, rooms_of
 from lab.preset.sections.parts import parts_of
+from lab.preset.sections.water.bodies import depths_of, rooms_of
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
 from lab.preset.sections.water.tanks import Pool, outline_at
 from solvers.fluid.given import Fluid, Water

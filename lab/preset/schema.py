@@ -22,7 +22,6 @@ from lab.preset.kept.content import MATTERS
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
 from lab.preset.sections.axle import Axle, check_axle
-from lab.preset.sections.bodies import rooms_of
 from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
@@ -38,8 +37,8 @@ from lab.preset.sections.tank import FurtherTank, Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.air_checks import check_air
+from lab.preset.sections.water.bodies import WithBodies
 from lab.preset.sections.water.checks import check_water
-from lab.preset.sections.water.floating import check_floating
 from lab.preset.sections.water.flow_checks import check_weight
 from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import Gauge, Water
@@ -56,7 +55,7 @@ FORMAT = 3
 
 
 @dataclass(frozen=True)
-class Preset:
+class Preset(WithBodies):
     """A preset: all that may be said of an experiment, with its base and overrides merged in."""
 
     title: Annotated[str, Doc("What the experiment is, in a line.")]
@@ -111,21 +110,6 @@ class Preset:
     def matters(self) -> tuple[str, ...]:
         """The keys of the matters that the tank holds; none if it is empty."""
         return tuple(name for name in MATTERS if getattr(self, name) is not None)
-
-    @property
-    def bodies(self) -> tuple[str, ...]:
-        """The names of the parts that float."""
-        return tuple(name for name, part in self.parts.items() if part.floats)
-
-    @property
-    def rooms(self) -> tuple[str, ...]:
-        """The rooms of all hulls, by the hull's name and their own."""
-        return tuple(f"{name}.{room}" for name, part in self.parts.items() for room in rooms_of(part))
-
-    @property
-    def openings(self) -> tuple[str, ...]:
-        """The openings of all hulls, by the hull's name and their own."""
-        return tuple(f"{name}.{opening}" for name, part in self.parts.items() for opening in part.openings)
 
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:
@@ -233,9 +217,7 @@ def check(preset: Preset) -> None:
     duration = duration_of(preset.run, preset.motion)
     others = preset.ship is not None, bool(preset.motion.parts), bool(preset.matters)
     check_axle(preset.axle, *others, duration, max(preset.tank.extent))
-    check_floating(preset)
-    if preset.water is not None:
-        check_solids(preset)
+    check_solids(preset)
     check_stability(preset.stability, preset.ship)
     check_video(preset.video, preset.matters)
 

@@ -32,7 +32,7 @@ from lab.recording.opening import open_to_read
 from lab.recording.outlines import GROUP, read_outlines
 from lab.recording.outlines import TABLES as OF_SHAPES
 from lab.recording.tables import Frames, Series, reading
-from solvers.machine.quantity import Quantity
+from solvers.machine.quantity import OWNERS, Quantity
 
 if TYPE_CHECKING:
     import xarray
@@ -41,19 +41,7 @@ if TYPE_CHECKING:
     from lab.recording.contacts.table import Contacts
 
 # Arbitrary but distinct sizes, to compare shapes
-SIZES = dict(
-    world=2,
-    grain=3,
-    part=5,
-    water_particle=7,
-    air_particle=19,
-    gauge=11,
-    level=13,
-    edge=17,
-    body=23,
-    room=29,
-    opening=31,
-)
+SIZES = dict(zip(OWNERS, (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31), strict=True))
 TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 
 

@@ -45,7 +45,6 @@ class Forces:
         self.sums = *self.counts, *self.powers
         self.order, self.outlines = context.lists.order, context.lists.order.layers
         self.tension = Tension(context.particles, context.constants)
-        self.gradients = context.constants.diffusion.renormalised
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
 
     def counted(self, behind: np.ndarray) -> list[np.ndarray]:
@@ -123,8 +122,7 @@ class Forces:
     @ti.func
     def book(self, u, tank, total, dt):
         """Book the load on a tank: force (y, z; N/m) and moment (N)."""
-        thick = self.thick[0]
-        self.load.book(u, tank, ti.Vector([total[0] * thick, total[1] * thick, total[2] * thick]), dt)
+        self.load.book(u, tank, ti.Vector([total[k] * self.thick[0] for k in ti.static(range(3))]), dt)
 
     @ti.func
     def pass_block(self, u, b, listed, kick):
@@ -198,7 +196,7 @@ class Forces:
                 push[a] += along * apart[a]
                 if ti.static(self.voids.acts):
                     fill[a] += weighted[a]
-            if ti.static(self.gradients):
+            if ti.static(self.constants.diffusion.renormalised):
                 more = p.deviation[jb, lane] - s
                 for a in ti.static(range(p.axes)):
                     gradient[a] = gradient[a] - more * weighted[a]
@@ -293,7 +291,7 @@ class Forces:
         middle, apart = 0.5 * (yy + zz), 0.5 * (yy - zz)
         eigenvalue = middle - ti.sqrt(apart * apart + yz * yz)
         p.store(p.eigenvalue, b, eigenvalue)
-        if ti.static(self.gradients):
+        if ti.static(self.constants.diffusion.renormalised):
             regular = eigenvalue > SINGULAR
             determinant = ti.select(regular, yy * zz - yz * yz, p.ones())
             along_y = (zz * gradient[0] - yz * gradient[1]) / determinant

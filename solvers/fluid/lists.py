@@ -6,10 +6,10 @@ from itertools import product
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.constants import Constants
 from solvers.fluid.order import BINS, ROWS, Order
 from solvers.fluid.state import UNUSED, Listing, Particles, WorkRanges
-from solvers.fluid.walls.bodies import Bodies
 from solvers.machine.state import State, padded
 from solvers.machine.units import Units
 from solvers.motion.poses import Poses
@@ -260,14 +260,9 @@ class Lists:
     def visible(self, b, entry, apart: ti.template(), part: ti.template()):
         """The share of an entry's particle that a block b sees past plates and hulls, at a part of the step."""
         p, jb, lane = self.particles, self.block_of(entry), self.lane_of(entry)
-        if ti.static(len(self.bodies.visibility.plates) + self.bodies.hulls.count > 0):
+        if ti.static(self.bodies.hide):
             place = [ti.cast(p.place[a][jb, lane] + self.seen(entry, a), p.real) for a in ti.static(range(p.axes))]
-            share = p.ones()
-            if ti.static(len(self.bodies.visibility.plates) > 0):
-                share *= self.bodies.visibility.share(b, jb, place, apart, part)
-            if ti.static(self.bodies.hulls.count > 0):
-                share *= self.bodies.hulls.share(b, jb, lane, place, apart)
-            return share
+            return self.bodies.share(b, jb, lane, place, apart, part)
         else:
             return ti.cast(1.0, p.real)
 

@@ -5,6 +5,7 @@ from typing import ClassVar
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scene, refuse_state, residual, suspects
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
@@ -20,7 +21,6 @@ from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, Particles, WorkRanges
 from solvers.fluid.walls.added_mass import wall_added_mass
-from solvers.fluid.walls.bodies import Bodies
 from solvers.fluid.walls.divergence_correction import DivergenceCorrection
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
@@ -54,9 +54,8 @@ class WaterMatter(Matter):
         grid = grid_round(water, fluid.particles["position"], scene.tanks, context.walls.bounds, lanes)
         slots, blocks, first = grid.arranged(layers.points, layers.tanks)
         self.bodies = Bodies(arrays, context.parts, water, scene, lanes)
-        self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
-        self.gas = fluid.particles["gas"].astype(float)
+        self.nearing, self.gas = self.bodies.fastest, fluid.particles["gas"].astype(float)
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
         sizes = context.axes, worlds, count, lanes, walls, grid.strips
@@ -74,9 +73,8 @@ class WaterMatter(Matter):
         self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.substeps)
         shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
         tangential = TangentialCorrection(arrays, shared, layers, slots, scene.tanks)
-        self.extrapolation = Extrapolation(arrays, shared, tangential)
+        self.extrapolation = Extrapolation(arrays, shared, tangential, self.load, tank.thickness)
         self.forces = Forces(arrays, shared, self.extrapolation, self.load, tank.thickness)
-        self.extrapolation.coupling.join(self.load, self.forces.thick)
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
         self.has_multiples = self.sound_switch.has_multiples
         self.continuity, self.vent = Continuity(arrays, shared, self.forces), OutflowVent(arrays, shared, water.air)
@@ -89,7 +87,8 @@ class WaterMatter(Matter):
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * fluid.particles["volume"].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
-        self.before, self.between = substeps.first(self._before()), substeps.last([Phase(self.note_passage)])
+        between = [Phase(self.note_passage), *self.extrapolation.coupling.between]
+        self.before, self.between = substeps.first(self._before()), substeps.last(between)
         correction = [DivergenceCorrection(arrays, shared, layers, slots).correct] if self.continuity.corrects else []
         acts = self.mover.kick, *correction, self.continuity.continuity_pass, self.finish
         self.after = substeps.last(Phase(act, units) for act in acts)
@@ -99,8 +98,7 @@ class WaterMatter(Matter):
             Phase(self.note_poses),
             Phase(self.forces.update_state, self.units),
             *([Phase(self.vent.sum, self.units), Phase(self.vent.flow)] if self.vent.acts else ()),
-            *([Phase(self.extrapolation.extrapolate, self.units)] if self.particles.wall_blocks else ()),
-            *([Phase(self.extrapolation.coupling.solve)] if self.bodies.floats else ()),
+            *self.extrapolation.phases,
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
             Phase(self.forces.momentum_pass, self.units),
@@ -131,8 +129,6 @@ class WaterMatter(Matter):
     def note_passage(self, w, t, kick, dt):
         """Note how the tank moves through the step."""
         self.poses.note_passage(w, t, dt)
-        if ti.static(self.bodies.floats and self.extrapolation.sticks):
-            self.extrapolation.coupling.note_rest(w)
 
     @ti.func
     def finish(self, u, frame, kick, dt):
@@ -207,11 +203,10 @@ class WaterMatter(Matter):
         self.sound_switch.use(False, self.scene.gravity)
         p.put(self.fluid.particles, self.water)
         p.put_walls(*self.wall_points, self.bodies.solids)
-        self.bodies.hulls.place()
-        for field in (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind, self.lists.last):
+        lists, sums = self.lists, (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind)
+        for field in (*sums, lists.last, lists.skin):
             field.fill(0.0)
-        self.lists.skin.fill(0.0)
-        self.lists.expire()
+        lists.expire()
         for noted in (self.bodies, self.gauges, self.edges, self.load, self.poses, self.extrapolation.coupling):
             noted.forget()
         self.start[:] = np.nan
@@ -243,8 +238,7 @@ class WaterMatter(Matter):
             "water_escaped": sums["escaped"],
             **self.gauges.read_and_reset(),
             **self.edges.read_and_reset(),
-            **self.bodies.read_and_reset(thick, by_parts),
-            **self.bodies.hulls.observe(time, thick),
+            **self.bodies.read_and_reset(time, thick, by_parts),
         }
         np.copyto(self.start, residual(rows, 0.0), where=np.isnan(self.start))
         return rows

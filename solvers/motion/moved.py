@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import taichi as ti
 
 from solvers.machine.state import State
+from solvers.motion.free import FreeBodies
 from solvers.motion.prescribed import Prescribed
 from solvers.tank.parts import Part, travel
 from solvers.tank.pieces import Pieces
@@ -50,10 +51,12 @@ def motions_of(part: Part) -> tuple:
     return (*moves, *part.motions)
 
 
-def make_pieces(arrays: State, parts: Sequence[Part], worlds: int) -> Pieces:
-    """The parts of a scene as pieces; one that never moves, or freely, has no carrier."""
+def make_pieces(arrays: State, parts: Sequence[Part], carrier, worlds: int, tanks: int) -> Pieces:
+    """The parts of a scene as pieces in so many tanks that a carrier moves; only one that is driven has its own."""
     moves = [[motions_of(part)] * worlds for part in parts]
     carriers = [
         Prescribed(arrays.under(f"parts.{k}"), each, 0.0, 0.0) if each[0] else None for k, each in enumerate(moves)
     ]
-    return Pieces(arrays, parts, carriers, worlds)
+    pieces = Pieces(arrays, parts, carriers, worlds)
+    pieces.join(FreeBodies(arrays, pieces, carrier, tanks))
+    return pieces

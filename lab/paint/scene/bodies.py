@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from lab.paint.painter import Camera, paint_plate, paint_shape
-from lab.preset.sections.bodies import rooms_of
+from lab.preset.sections.water.bodies import rooms_of
 
 PLATE, EDGE, COVER = 0.3, 0.12, 0.1  # thickness of plates, of outlines and of covers, in u
 PALE = 0.45  # of the part's colour in a solid body; the rest is the paper's

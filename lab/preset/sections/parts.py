@@ -7,8 +7,8 @@ from typing import Annotated
 
 from lab.base.errors import LabError
 from lab.preset.outline import MOST_CORNERS, Point
-from lab.preset.sections import bodies
 from lab.preset.sections.history import Record, check_record, check_start
+from lab.preset.sections.water import bodies
 from lab.preset.units import needed, show
 from solvers.machine.marks import Doc
 from solvers.motion import MOTIONS

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from solvers.fluid.bodies.solids import is_solid
 from solvers.fluid.start.lattice import CLOSE, NEAR, from_edges, lattice
-from solvers.fluid.walls.solids import is_solid
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 

@@ -6,12 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from solvers.fluid.bodies.solids import TOUCHES, counter_clockwise, is_solid, line_of, prolonging, sheet
 from solvers.fluid.given import Water
 from solvers.fluid.start.lattice import from_edges
 from solvers.fluid.start.packing import KEPT, PUSH, Crowd, Packing, area_of, below, relax, scattered
 from solvers.fluid.start.parts import free_share
 from solvers.fluid.walls.layers import layers
-from solvers.fluid.walls.solids import TOUCHES, counter_clockwise, is_solid, line_of, prolonging, sheet
 from solvers.tank.parts import Body, Part
 from solvers.tank.tank import Tank
 

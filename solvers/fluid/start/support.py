@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solvers.fluid.walls.solids import is_solid, sides_of
+from solvers.fluid.bodies.solids import is_solid, sides_of
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 

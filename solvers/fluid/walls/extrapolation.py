@@ -2,13 +2,15 @@
 
 import taichi as ti
 
+from solvers.fluid.bodies.coupling import FreeBodyCoupling
 from solvers.fluid.lists import FluidContext
-from solvers.fluid.walls.free_bodies import FreeBodyCoupling
 from solvers.fluid.walls.slip_correction import SlipCorrection
 from solvers.fluid.walls.tangential_correction import TangentialCorrection
+from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
+from solvers.tank.load import Load
 
 SEEN = 1e-6  # of full coverage: a wall particle that sees less water has no pressure
 
@@ -28,18 +30,25 @@ class Extrapolation:
     rows one; up to 0.2 Δx off none of four.
     """
 
-    def __init__(self, arrays: State, context: FluidContext, tangential: TangentialCorrection):
+    def __init__(
+        self, arrays: State, context: FluidContext, tangential: TangentialCorrection, load: Load, thickness: float
+    ):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
         self.bodies = context.lists.bodies
         self.sticks = context.constants.viscous and not context.constants.slip
         self.slip, self.tangential = SlipCorrection(arrays, context), tangential
-        self.coupling = FreeBodyCoupling(arrays, context, tangential, self.sticks)
+        self.coupling = FreeBodyCoupling(arrays, context, tangential, load, thickness, self.sticks)
         if self.sticks:
             own = arrays.under("water")
             p = self.particles
             each = Axis("block", p.worlds * p.stride), Axis("lane", p.lanes)
             self.mirrored = own.wide(each, *named("mirrored", p.axes), kept=False)
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """What finds the pressures of all wall particles; none where there are none."""
+        return (Phase(self.extrapolate, self.units), *self.coupling.before) if self.particles.wall_blocks else ()
 
     @ti.func
     def extrapolate(self, u, t, kick, dt):

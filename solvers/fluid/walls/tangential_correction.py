@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.bodies.solids import sides_of
 from solvers.fluid.lists import FluidContext
 from solvers.fluid.walls.layers import FAR, deep
-from solvers.fluid.walls.solids import sides_of
 from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.state import Axis, State, padded
 from solvers.motion.poses import AT_START

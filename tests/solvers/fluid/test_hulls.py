@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.fluid.walls.hulls import OPENS
+from solvers.fluid.bodies.hulls import OPENS
 from solvers.simulation import Simulation
 from tests.oracles.floating import hull, momentum
 from tests.oracles.water import GRAVITY
@@ -18,7 +18,7 @@ def thin():
 
 
 def test_a_thin_wall_keeps_the_water_on_either_side_apart(thin):
-    """The lift is that of hydrostatics to 1 % and its swing, the mass within stays to rounding, its level to 0.02 Δx."""
+    """The lift is that of hydrostatics to 1 %; the mass within stays, and its level to 0.02 spacings."""
     run, start = thin
     run.restore(start)
     mass, lifts, levels = run.observe()["room_water"][0, 0], [], []
@@ -47,7 +47,7 @@ def test_water_flows_in_by_forces_that_are_equal_and_opposite(thin):
     try:
         run.advance(1)
         weighs = GRAVITY * run.water.particles.read(run.water.particles.mass)[0][0].sum()
-        first, began, booked, pushed, flowed = momentum_of_water(run), run.time, run.loads() * 0.0, 0.0, 0.0
+        first, began, booked, pushed, flowed = momentum(run), run.time, run.loads() * 0.0, 0.0, 0.0
         before = run.observe()["room_water"][0, 0]
         for _ in range(100):
             run.advance(2)
@@ -55,15 +55,10 @@ def test_water_flows_in_by_forces_that_are_equal_and_opposite(thin):
             booked = booked + 2 * run.dt * run.loads()
             pushed += 2 * run.dt * np.abs(run.loads()[0, :, :2]).sum()
             flowed += 2 * run.dt * rows["opening_flow"][0, 0]
-        lost = momentum_of_water(run) - first + booked[0, :, :2].sum(axis=0)
+        lost = momentum(run) - first + booked[0, :, :2].sum(axis=0)
         lost[1] += weighs * (run.time - began)
         assert np.abs(lost).max() < 1e-12 * pushed
         assert flowed > 10.0  # kg
         assert rows["room_water"][0, 0] - before == pytest.approx(flowed, rel=0.1)
     finally:
         lines.from_numpy(covered)
-
-
-def momentum_of_water(run: Simulation) -> np.ndarray:
-    """Momentum (2,) N s of the water of the first world."""
-    return momentum(run)

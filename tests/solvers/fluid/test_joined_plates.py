@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from solvers.fluid.bodies.solids import is_solid, line_of, prolonging
 from solvers.fluid.checks import residual
 from solvers.fluid.given import Water
 from solvers.fluid.start.parts import clear_of
 from solvers.fluid.start.plates import packed_beside
-from solvers.fluid.walls.solids import is_solid, line_of, prolonging
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Body, Part

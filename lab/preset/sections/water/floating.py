@@ -3,8 +3,8 @@
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.sections.bodies import draught
 from lab.preset.sections.parts import PartGroup
+from lab.preset.sections.water.bodies import draught
 from lab.preset.sections.water.liquid import Wet
 from lab.preset.units import show
 

@@ -9,9 +9,10 @@ from lab.preset.outline import simple_polygon
 from lab.preset.sections.history import check_end
 from lab.preset.sections.parts import PartGroup, parts_of
 from lab.preset.sections.water import liquid
+from lab.preset.sections.water.floating import check_floating
 from lab.preset.sections.water.tanks import outline_at, pools
 from lab.preset.units import show
-from solvers.fluid.walls.solids import counter_clockwise
+from solvers.fluid.bodies.solids import counter_clockwise
 from solvers.tank.tank import Tank as Outline
 
 THINNEST = (
@@ -24,7 +25,10 @@ NEAR = 1e-3  # of the tank's larger side: how far a part may stand in a wall
 
 
 def check_solids(preset: liquid.Wet) -> None:
-    """Raise LabError, one sentence, for the first part that water cannot have in it."""
+    """Raise LabError, one sentence, for the first part that water cannot have in it, or that cannot float."""
+    check_floating(preset)
+    if preset.water is None:
+        return
     wet = {pool.number for pool in pools(preset)}
     for (name, part), solved in zip(preset.parts.items(), parts_of(preset), strict=True):
         key = f"parts.{name}"

@@ -3,9 +3,9 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.bodies.solids import Solids, rooms_of
 from solvers.fluid.given import Water
 from solvers.fluid.state import UNUSED, Particles
-from solvers.fluid.walls.solids import Solids, rooms_of
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.poses import Poses
 from solvers.space.axes import dot

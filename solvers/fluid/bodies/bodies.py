@@ -3,12 +3,12 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.bodies.hulls import Hulls
+from solvers.fluid.bodies.solids import Solids
+from solvers.fluid.bodies.visibility import Visibility
 from solvers.fluid.given import Water
 from solvers.fluid.order import Order
 from solvers.fluid.state import UNUSED, Particles, WorkRanges
-from solvers.fluid.walls.hulls import Hulls
-from solvers.fluid.walls.solids import Solids
-from solvers.fluid.walls.visibility import Visibility
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.poses import AT_START, Poses
 from solvers.space.axes import dot
@@ -41,6 +41,7 @@ class Bodies:
         self.rows = len(self.solids.places)
         self.visibility = Visibility(arrays, parts, water, scene, wet)
         self.hulls = Hulls(arrays, pieces, self.solids, water, USUAL // lanes)
+        self.hide = len(self.visibility.plates) + self.hulls.count > 0  # whether they hide particles from each other
         self.fastest, self.moving, self.floats = pieces.fastest, pieces.moving, pieces.floats
         self.slips = water.slip
         if parts:
@@ -210,6 +211,16 @@ class Bodies:
         return found
 
     @ti.func
+    def share(self, b, jb, lane, place: ti.template(), apart: ti.template(), part: ti.template()):
+        """The share of the particle at `place` in a lane of block jb that each of a block b sees, `apart` from it."""
+        share = self.particles.ones()
+        if ti.static(len(self.visibility.plates) > 0):
+            share *= self.visibility.share(b, jb, place, apart, part)
+        if ti.static(self.hulls.count > 0):
+            share *= self.hulls.share(b, jb, lane, place, apart)
+        return share
+
+    @ti.func
     def end_in(self, part, b):
         """Where the rows of a part end for a block b of water; where they begin if it is in another tank."""
         end = self.ends[part + 1]
@@ -235,7 +246,8 @@ class Bodies:
         self.elapsed[u] = self.elapsed[u] + ti.cast(dt, self.exact)
 
     def forget(self) -> None:
-        """Forget all loads and work."""
+        """Forget all loads and work, and close the openings of hulls."""
+        self.hulls.place()
         if self.count:
             for field in (*self.impulse, *self.force, self.work, self.power, self.elapsed):
                 field.fill(0.0)
@@ -250,8 +262,9 @@ class Bodies:
             return np.zeros((self.worlds, 0))
         return self._of_worlds(self.work) + behind[:, None] * self._of_worlds(self.power)
 
-    def read_and_reset(self, thickness: float, work: np.ndarray) -> dict[str, np.ndarray]:
-        """The mean loads on the parts (W, parts, 3) since they were last taken, which begin anew; and their `work`."""
+    def read_and_reset(self, time: float, thickness: float, work: np.ndarray) -> dict[str, np.ndarray]:
+        """The mean loads on the parts (W, parts, 3) since they were last taken, which begin anew; their `work` up to a
+        `time` (s), and the water in the rooms of hulls then."""
         if not self.count:
             return {"part_force": np.zeros((self.worlds, 0, 3)), "part_work": np.zeros((self.worlds, 0))}
         impulse = np.stack([self._of_worlds(field) for field in self.impulse], axis=-1)
@@ -259,7 +272,8 @@ class Bodies:
         for field in (*self.impulse, self.elapsed):
             field.fill(0.0)
         mean = thickness * impulse / np.where(elapsed > 0.0, elapsed, 1.0)[:, None, None]
-        return {"part_force": mean, "part_work": thickness * work}
+        rooms = self.hulls.observe(time, thickness)
+        return {"part_force": mean, "part_work": thickness * work} | rooms
 
     def _of_worlds(self, field: ti.Field) -> np.ndarray:
         """Sums over the units of each world (W, parts)."""

@@ -1,9 +1,11 @@
 """How water answers the acceleration of free bodies at once: the pressures of wall particles follow from it."""
 
+import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import FluidContext
 from solvers.fluid.walls.tangential_correction import TangentialCorrection
+from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
 from solvers.motion.free import HELD, INERTIA, MASS
 from solvers.motion.poses import AT_START
@@ -34,14 +36,25 @@ class FreeBodyCoupling:
     Limits: in water of one phase; bodies answer each other only through the water's motion.
     """
 
-    def __init__(self, arrays: State, context: FluidContext, tangential: TangentialCorrection, sticks: bool):
+    def __init__(
+        self,
+        arrays: State,
+        context: FluidContext,
+        tangential: TangentialCorrection,
+        load: Load,
+        thickness: float,
+        sticks: bool,
+    ):
         self.units, self.particles, self.constants = context.units, context.particles, context.constants
         self.poses, self.bodies, self.tangential = context.poses, context.lists.bodies, tangential
-        self.free = self.bodies.pieces.bodies
-        self.acts, self.sticks = self.bodies.floats, sticks
+        self.free, self.load = self.bodies.pieces.bodies, load
+        self.acts = self.bodies.floats
+        self.before = (Phase(self.solve),) if self.acts else ()
+        self.between = (Phase(self.note_rest),) if self.acts and sticks else ()
         if not self.acts:
             return
         p, own = self.particles, arrays.under("water.coupling")
+        self.thickness = own.holding("thickness", np.array([thickness]), "one", own.exact)
         each = Axis("block", p.worlds * self.bodies.room), Axis("lane", p.lanes)
         (self.still,) = own.wide(each, "still", kept=False)  # the pressure p0 at a = 0, cut off nowhere; Pa
         self.lever = own.wide(each, *(f"lever_{name}" for name in OF_LOAD), kept=False)
@@ -52,10 +65,6 @@ class FreeBodyCoupling:
         (self.rest,) = own.reals(of_body, "rest", kind=own.exact)
         system = Axis("world", p.worlds), Axis("number", 12)
         (self.system,) = own.reals(system, "system", kind=own.exact, kept=False)
-
-    def join(self, load: Load, thickness: ti.Field) -> None:
-        """Take the water's `load`, and the thickness (m) of its slab."""
-        self.load, self.thickness = load, thickness
 
     @property
     def others(self) -> list[Load]:
@@ -216,7 +225,7 @@ class FreeBodyCoupling:
             self.foreseen[w, i, k] = load
 
     @ti.func
-    def note_rest(self, w):
+    def note_rest(self, w, t, kick, dt):
         """Note what the load on each free body of a world has besides, once the forces are known."""
         for i in range(self.free.count):
             if self.free.state[w, i] != HELD:

@@ -74,6 +74,25 @@ KEYS = [
 ]
 
 
+class WithBodies:
+    """What a preset's parts are, by name: the bodies that float, the rooms and the openings of hulls."""
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The names of the parts that float."""
+        return tuple(name for name, part in self.parts.items() if part.floats)
+
+    @property
+    def rooms(self) -> tuple[str, ...]:
+        """The rooms of all hulls, by the hull's name and their own."""
+        return tuple(f"{name}.{room}" for name, part in self.parts.items() for room in rooms_of(part))
+
+    @property
+    def openings(self) -> tuple[str, ...]:
+        """The openings of all hulls, by the hull's name and their own."""
+        return tuple(f"{name}.{opening}" for name, part in self.parts.items() for opening in part.openings)
+
+
 def floats(part) -> bool:
     """Whether a part moves freely."""
     return part.density is not None or part.mass is not None
@@ -170,11 +189,11 @@ def _faults_of_hull(part) -> Iterator[tuple[str, str]]:
         except LabError as error:
             yield key, f"{error}".rstrip(".") + ("" if part.rooms else "; take a thinner wall, or draw the rooms")
             continue
-        if not part.rooms and moments(corners)[0] <= 0.0:
-            yield key, "leaves no room in this hull; take a thinner wall"
-            continue
         near = _distance(corners, outer)
         if not Tank(outer, 1.0).holds(corners).all() or near < 0.99 * part.wall:
+            if not part.rooms:
+                yield key, "leaves no room in this hull; take a thinner wall"
+                continue
             yield key, f"this room is not in the hull, its walls of {show(part.wall, 'm')} round it; move its corners"
         for other, theirs in rooms.items():
             if other < name and (_overlap(corners, theirs) or _distance(corners, theirs) < 0.99 * part.wall):

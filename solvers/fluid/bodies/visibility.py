@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.bodies.solids import TOUCHES, is_solid, line_of, prolonging
 from solvers.fluid.given import Water
 from solvers.fluid.order import Order
 from solvers.fluid.state import UNUSED, Particles
 from solvers.fluid.walls.layers import FAR
-from solvers.fluid.walls.solids import TOUCHES, is_solid, line_of, prolonging
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot

@@ -1,0 +1,95 @@
+"""Bodies that float and hulls in presets: what follows from their keys, and what is refused."""
+
+import pytest
+
+from lab.base.errors import LabError
+from lab.preset.schema import resolve
+
+BOX = [["-500 mm", "600 mm"], ["500 mm", "600 mm"], ["500 mm", "1.6 m"], ["-500 mm", "1.6 m"]]
+ROOM = [["-400 mm", "700 mm"], ["-50 mm", "700 mm"], ["-50 mm", "1.5 m"], ["-400 mm", "1.5 m"]]
+OTHER = [["50 mm", "700 mm"], ["400 mm", "700 mm"], ["400 mm", "1.5 m"], ["50 mm", "1.5 m"]]
+
+
+def given(**box) -> dict:
+    """A preset with a solid box in a tank of water, with these keys of the box."""
+    return {
+        "format": 3,
+        "title": "box",
+        "tank": {"width": "3 m", "height": "2 m", "thickness": "2 m"},
+        "water": {"depth": "1.2 m", "spacing": "50 mm"},
+        "parts": {"box": {"closed": True, "points": BOX, **box}},
+        "run": {"duration": "1 s"},
+    }
+
+
+def test_an_even_body_has_the_mass_centre_and_inertia_of_its_section():
+    """m = ρ a² t, I = m a²/6, about the middle."""
+    free = resolve(given(density="600 kg/m^3")).parts["box"].solved(0, 2.0).free
+    assert free.mass == pytest.approx(1200.0)
+    assert free.inertia == pytest.approx(200.0)
+    assert free.centre == pytest.approx((0.0, 1.1))
+
+
+def test_the_density_of_a_hull_is_that_of_its_walls():
+    """With walls of a tenth: 1 − 0.8² of the area, and a²/6 (1 − 0.8⁴)/(1 − 0.8²) of the mass."""
+    preset = resolve(given(density="1000 kg/m^3", wall="100 mm"))
+    free = preset.parts["box"].solved(0, 2.0).free
+    assert preset.rooms == ("box.inside",)
+    assert free.mass == pytest.approx(2000.0 * (1.0 - 0.64))
+    assert free.inertia == pytest.approx(free.mass / 6.0 * (1.0 - 0.8**4) / (1.0 - 0.8**2))
+
+
+def test_a_room_of_its_own_shifts_the_centre_of_the_walls():
+    """One room left of the middle, 0.35 by 0.8: the walls' centre goes right by 0.225 · 0.28/0.72."""
+    rooms = {"port": {"points": ROOM, "depth": "200 mm"}}
+    free = resolve(given(density="900 kg/m^3", wall="100 mm", rooms=rooms)).parts["box"].solved(0, 2.0).free
+    assert free.centre[0] == pytest.approx(0.225 * 0.28 / 0.72)
+
+
+HOLE = {"points": [["0 mm", "650 mm"], ["200 mm", "650 mm"]]}
+
+
+@pytest.mark.parametrize(
+    ("keys", "key", "remedy"),
+    [
+        ({"release": "1 s"}, "parts.box.release", "give its density"),
+        ({"mass": "3 kg", "density": "600 kg/m^3"}, "parts.box.mass", "give one of the two"),
+        ({"density": "600 kg/m^3", "closed": False}, "parts.box.closed", "set closed = true"),
+        ({"density": "600 kg/m^3", "sway": {"amplitude": "1 mm", "frequency": "1 Hz"}}, "parts.box.sway", "leave this"),
+        ({"density": "60 kg/m^3"}, "parts.box.density", "take smaller particles"),
+        ({"density": "-3 kg/m^3"}, "parts.box.density", "greater than 0"),
+        ({"wall": "100 mm", "density": "3000 kg/m^3"}, "parts.box.density", "make it lighter"),
+        ({"wall": "20 mm"}, "parts.box.wall", "take smaller particles"),
+        ({"wall": "600 mm"}, "parts.box.wall", "thinner wall"),
+        ({"rooms": {"port": {"points": ROOM}}}, "parts.box.rooms", "thickness of its wall"),
+        ({"openings": {"hole": HOLE}}, "parts.box.openings", "thickness of its wall"),
+        (
+            {"wall": "100 mm", "rooms": {"a": {"points": ROOM}, "b": {"points": ROOM}}},
+            "parts.box.rooms.b",
+            "leave a wall",
+        ),
+        ({"wall": "120 mm", "rooms": {"a": {"points": ROOM}}}, "parts.box.rooms.a.points", "move its corners"),
+        (
+            {"wall": "100 mm", "openings": {"hole": {"points": [["0 m", "1 m"], ["0.1 m", "1 m"]]}}},
+            "parts.box.openings.hole.points",
+            "in the middle of the wall",
+        ),
+        (
+            {"density": "600 kg/m^3", "points": [[y, z.replace("600 mm", "-200 mm")] for y, z in BOX]},
+            "parts.box.points",
+            "keep it inside",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_sentence_with_key_and_remedy(keys, key, remedy):
+    with pytest.raises(LabError) as caught:
+        resolve(given(**keys))
+    told = str(caught.value)
+    assert told.startswith(key) and remedy in told and "\n" not in told
+
+
+def test_two_rooms_and_an_opening_between_them_are_taken():
+    rooms = {"port": {"points": ROOM}, "starboard": {"points": OTHER}}
+    hole = {"points": [["0 m", "1 m"], ["0 m", "1.2 m"]], "opens": "2 s"}
+    preset = resolve(given(wall="100 mm", density="900 kg/m^3", rooms=rooms, openings={"door": hole}))
+    assert preset.rooms == ("box.port", "box.starboard") and preset.openings == ("box.door",)
