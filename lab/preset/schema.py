@@ -41,7 +41,7 @@ from lab.preset.sections.water.bodies import WithBodies
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.flow_checks import check_weight
 from lab.preset.sections.water.liquid import liquid
-from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.section import DampingZone, Gauge, Water
 from lab.preset.sections.water.solids import check_solids
 from lab.preset.sections.water.tanks import Pool, check_tanks, pools
 from solvers.fluid import given as fluid
@@ -88,6 +88,7 @@ class Preset(WithBodies):
     gauges: Annotated[dict[str, Gauge], Of("water"), Doc("Gauges of the water's pressure and level.")] = field(
         default_factory=dict
     )
+    damping: Annotated[dict[str, DampingZone], Of("water"), Doc("Zones that damp waves.")] = field(default_factory=dict)
     motion: Annotated[Motion, Doc("How the tank moves.")] = field(default_factory=Motion)
     parts: Annotated[dict[str, Part], Doc("Parts in the tank, such as gates, funnels and pistons, which may move.")] = (
         field(default_factory=dict)

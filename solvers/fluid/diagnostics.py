@@ -8,7 +8,7 @@ import taichi as ti
 
 from solvers.fluid import quantities
 from solvers.fluid.constants import Constants
-from solvers.fluid.order import Order
+from solvers.fluid.lists.order import Order
 from solvers.fluid.phases import quantities as of_air
 from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.quantity import places

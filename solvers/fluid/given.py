@@ -40,6 +40,15 @@ class Level:
 
 
 @dataclass(frozen=True)
+class DampingZone:
+    """A beach: from `start` to `end` (m), along y, water is damped, at the end at this `rate` (1/s)."""
+
+    start: float
+    end: float
+    rate: float
+
+
+@dataclass(frozen=True)
 class Pull:
     """A force towards a fixed point, −`rate`² (r − centre) per mass (Monaghan & Rafiee 2013, eq. 4.1)."""
 
@@ -89,7 +98,7 @@ class Water:
     `start`: the name of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides,
     None: nothing. `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share
     `swing_damping` of the critical damping. `added_mass`: "layer" or "none", whether a ship has the added mass of the
-    wall particles on her own side.
+    wall particles on her own side. `damping`: the zones that take waves.
     """
 
     spacing: float
@@ -120,6 +129,7 @@ class Water:
     swing_damping: float = 0.0
     added_mass: str = "none"
     air: Air | None = None
+    damping: tuple[DampingZone, ...] = ()
 
     @property
     def softened(self) -> "Water":

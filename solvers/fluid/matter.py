@@ -5,17 +5,19 @@ from typing import ClassVar
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.account import quantities_of
 from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scene, refuse_state, residual, suspects
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
+from solvers.fluid.damping import DampingZones
 from solvers.fluid.diagnostics import Diagnostics, Pool
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import Fluid
-from solvers.fluid.grid import grid_round
-from solvers.fluid.lists import FluidContext, Lists
+from solvers.fluid.lists.grid import grid_round
+from solvers.fluid.lists.neighbours import FluidContext, Lists
+from solvers.fluid.lists.order import Order, Tanks
 from solvers.fluid.mover import Mover
-from solvers.fluid.order import Order, Tanks
 from solvers.fluid.phases.sound_switch import SoundSwitch
 from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.shifting import SHIFTING
@@ -78,7 +80,8 @@ class WaterMatter(Matter):
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
         self.has_multiples = self.sound_switch.has_multiples
         self.continuity, self.vent = Continuity(arrays, shared, self.forces), OutflowVent(arrays, shared, water.air)
-        self.mover = Mover(arrays, shared, self.extrapolation, self.vent, self.forces.voids, substeps)
+        self.damping = DampingZones(arrays, water, p, units)
+        self.mover = Mover(arrays, shared, self.extrapolation, self.vent, self.forces.voids, substeps, self.damping)
         probes = [slots[slot] + p.fluid_blocks * lanes for slot in layers.probes]
         self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, layers.open)
         pool = Pool.of(scene, context.walls, self.order)
@@ -207,39 +210,21 @@ class WaterMatter(Matter):
         for field in (*sums, lists.last, lists.skin):
             field.fill(0.0)
         lists.expire()
-        for noted in (self.bodies, self.gauges, self.edges, self.load, self.poses, self.extrapolation.coupling):
+        for noted in (
+            self.bodies,
+            self.gauges,
+            self.edges,
+            self.load,
+            self.poses,
+            self.extrapolation.coupling,
+            self.damping,
+        ):
             noted.forget()
         self.start[:] = np.nan
 
     def observe(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of every world at its time (s): (W, *shape) of each by name."""
-        sums, thick = self.diagnostics.sums_at(time, self.thickness), self.thickness
-        mass = np.maximum(sums["mass"], 1e-300)  # of both phases
-        centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
-        now = [field.to_numpy() for field in self.diagnostics.now]
-        down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
-        potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        potential += self.scene.gravity * self.diagnostics.buoyed(sums, down)
-        late = self.diagnostics.behind.to_numpy()
-        (viscous, stored, work), by_parts = self.forces.counted(late), self.bodies.work_until(late)
-        rows = {
-            **self.diagnostics.of_water(sums, mass, centre),
-            "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
-            "water_kinetic": sums["flowing"],
-            "water_potential": potential,
-            "water_elastic": sums["elastic"],
-            "water_total": sums["moving"] + potential + sums["elastic"],
-            "water_viscous": viscous * thick,
-            "water_diffusive": thick * self.continuity.diffused.to_numpy().reshape(len(mass), -1).sum(axis=1),
-            "water_work": (work + by_parts.sum(axis=1)) * thick,
-            "water_wall_energy": stored * thick,
-            "water_density_deviation": sums["deviation"],
-            "level_depth": self.diagnostics.level_depth.to_numpy()[:, : self.diagnostics.levels],
-            "water_escaped": sums["escaped"],
-            **self.gauges.read_and_reset(),
-            **self.edges.read_and_reset(),
-            **self.bodies.read_and_reset(time, thick, by_parts),
-        }
+        rows = quantities_of(self, time)
         np.copyto(self.start, residual(rows, 0.0), where=np.isnan(self.start))
         return rows
 

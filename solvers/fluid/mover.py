@@ -3,7 +3,8 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.lists import FluidContext
+from solvers.fluid.damping import DampingZones
+from solvers.fluid.lists.neighbours import FluidContext
 from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, THINNEST
 from solvers.fluid.surface.void_indicator import VoidIndicator
@@ -33,11 +34,12 @@ class Mover:
         vent: OutflowVent,
         voids: VoidIndicator,
         substeps: Substeps,
+        damping: DampingZones,
     ):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
         self.walls, self.bodies, self.vent, self.voids = walls, context.lists.bodies, vent, voids
-        self.substeps = substeps
+        self.substeps, self.damping = substeps, damping
         own = arrays.under("water.mover")
         (self.fastest,) = own.reals((context.units.axis,), "fastest")
         (self.deviation,) = own.reals((context.units.axis,), "deviation", kept=False)
@@ -67,6 +69,8 @@ class Mover:
                     centre = ti.cast(c.get("pull_y" if a == 0 else "pull_z"), p.where)
                     push = push - (c.get("pull") * filled) * p.offset(b, centre, a)
                 p.store(p.velocity[a], b, p.load(p.velocity[a], b) + during * push)
+            if ti.static(self.damping.count > 0):
+                self.damping.slow(u, b, during)
             farthest = ti.max(farthest, self.drift(w, b, filled, 0.5 * dt, AT_START))
             if ti.static(self.poses.rotating and c.diffusion.renormalised):
                 gradient = [p.load(p.gradient[a], b) for a in ti.static(range(p.axes))]

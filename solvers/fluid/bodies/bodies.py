@@ -7,7 +7,7 @@ from solvers.fluid.bodies.hulls import Hulls
 from solvers.fluid.bodies.solids import Solids
 from solvers.fluid.bodies.visibility import Visibility
 from solvers.fluid.given import Water
-from solvers.fluid.order import Order
+from solvers.fluid.lists.order import Order
 from solvers.fluid.state import UNUSED, Particles, WorkRanges
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.poses import AT_START, Poses

@@ -7,7 +7,7 @@ import taichi as ti
 
 from solvers.fluid.bodies.solids import TOUCHES, is_solid, line_of, prolonging
 from solvers.fluid.given import Water
-from solvers.fluid.order import Order
+from solvers.fluid.lists.order import Order
 from solvers.fluid.state import UNUSED, Particles
 from solvers.fluid.walls.layers import FAR
 from solvers.machine.state import Axis, State

@@ -8,7 +8,7 @@ import pytest
 
 from solvers.fluid.checks import CREATED, check_water, outside, refuse_state
 from solvers.fluid.given import Water
-from solvers.fluid.grid import watched_box
+from solvers.fluid.lists.grid import watched_box
 from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE
 from solvers.machine.errors import BadState
 from solvers.simulation import Simulation

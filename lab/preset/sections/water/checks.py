@@ -43,11 +43,27 @@ def check_water(preset: Whole) -> None:
     else:
         _check_shape(water, tank)
     _check_gauges(preset.gauges, tank)
+    _check_damping(preset)
     _check_spacing(preset)
     _check_sound(preset)
     _check_background(preset)
     check_flow(preset)
     check_periodic(preset)
+
+
+def _check_damping(preset: Whole) -> None:
+    """Raise LabError for a damping zone that is none, is not in the tank, or is in a tank that moves."""
+    low, high = (side(y for y, _ in preset.tank.corners) for side in (min, max))
+    for name, zone in preset.damping.items():
+        key = f"damping.{name}"
+        if preset.ship is not None or preset.axle is not None or preset.motion.parts:
+            raise LabError(f"{key}: a zone that damps waves stands in a tank at rest; leave out this or its motion.")
+        for end in ("start", "end"):
+            if not low <= getattr(zone, end) <= high:
+                sides = f"from {show(low, 'm')} to {show(high, 'm')}"
+                raise LabError(f"{key}.{end}: is not in the tank, which reaches {sides}.")
+        if zone.start == zone.end:
+            raise LabError(f"{key}.end: is where it starts; a zone needs a length, best that of a wave or more.")
 
 
 def _check_company(preset: Whole) -> None:

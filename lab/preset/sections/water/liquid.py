@@ -17,13 +17,15 @@ from lab.preset.sections.run import Run
 from lab.preset.sections.tank import Tank
 from lab.preset.sections.water.air import Air, sound_of_air
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
-from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.section import DampingZone, Gauge, Water
 from lab.preset.sections.water.tanks import Pool, Tanked
 from solvers.fluid import given
+from solvers.fluid.damping import rate_of
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.walls.layers import edge_of
+from solvers.ship.water import Water as Sea
 from solvers.tank.outline import moments
 
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
@@ -35,6 +37,7 @@ class Wet(Tanked, Protocol):
     water: Water
     air: Air | None
     gauges: dict[str, Gauge]
+    damping: dict[str, DampingZone]
     tank: Tank
     thickness: float
     motion: MotionGroup
@@ -86,12 +89,20 @@ def liquid(preset: Wet) -> given.Water:
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
         air=_air(preset, scheme) if preset.air is not None else None,
+        damping=tuple(_zone(preset, zone) for zone in preset.damping.values()),
     )
     if made.air is not None and water.background_pressure is None:
         over = max(z for _, z in preset.tank.corners) - bounds(preset)[1]
         hanging = ReducedPressure.hanging(made, preset.run.gravity, over)
         made = replace(made, background=background(made.softened.air, made, hanging))
     return made
+
+
+def _zone(preset: Wet, zone: DampingZone) -> given.DampingZone:
+    """A damping zone as the solver takes it, for the group velocity of its waves in water of this depth."""
+    sea, length = Sea(1.0, depth(preset), preset.run.gravity), abs(zone.end - zone.start)
+    rate = rate_of(length, float(sea.group_speed(2.0 * np.pi / zone.period))) if preset.run.gravity else 0.0
+    return given.DampingZone(zone.start, zone.end, rate)
 
 
 def _air(preset: Wet, scheme: Scheme) -> given.Air:

@@ -154,3 +154,12 @@ class Gauge:
     y: Annotated[Annotated[float, Unit("m")] | None, Doc("Where a level gauge measures the depth over the floor.")] = (
         None
     )
+
+
+@dataclass(frozen=True)
+class DampingZone:
+    """A beach: from `start` to `end` water is damped more and more, and waves that run in do not return."""
+
+    start: Annotated[float, Unit("m"), Doc("Where it starts, along the tank's floor.")]
+    end: Annotated[float, Unit("m"), Doc("Where it ends, and damps most; a wave's length away, or more.")]
+    period: Annotated[float, Unit("s"), Interval(gt=0), Doc("Period of the waves that it is to take.")]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.grid import Grid
+from solvers.fluid.lists.grid import Grid
 from solvers.fluid.state import COUNT, FAR, FLUID, UNUSED, Particles
 from solvers.machine.state import Axis, State, roomy
 

@@ -8,7 +8,7 @@ import taichi as ti
 
 from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.constants import Constants
-from solvers.fluid.order import BINS, ROWS, Order
+from solvers.fluid.lists.order import BINS, ROWS, Order
 from solvers.fluid.state import UNUSED, Listing, Particles, WorkRanges
 from solvers.machine.state import State, padded
 from solvers.machine.units import Units

@@ -1,0 +1,36 @@
+"""The account of the water: its quantities, with all energies that it has and has lost."""
+
+import numpy as np
+
+
+def quantities_of(matter, time: float) -> dict[str, np.ndarray]:
+    """The quantities of a `solvers.fluid.matter.WaterMatter` at its time (s): (W, *shape) of each by name."""
+    sums, thick = matter.diagnostics.sums_at(time, matter.thickness), matter.thickness
+    mass = np.maximum(sums["mass"], 1e-300)  # of both phases
+    centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
+    now = [field.to_numpy() for field in matter.diagnostics.now]
+    down = np.stack(now[3:5], axis=1) / max(matter.scene.gravity, 1e-300)
+    potential = mass * matter.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
+    potential += matter.scene.gravity * matter.diagnostics.buoyed(sums, down)
+    late = matter.diagnostics.behind.to_numpy()
+    (viscous, stored, work), by_parts = matter.forces.counted(late), matter.bodies.work_until(late)
+    viscous += matter.damping.total(len(viscous))
+    rows = {
+        **matter.diagnostics.of_water(sums, mass, centre),
+        "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
+        "water_kinetic": sums["flowing"],
+        "water_potential": potential,
+        "water_elastic": sums["elastic"],
+        "water_total": sums["moving"] + potential + sums["elastic"],
+        "water_viscous": viscous * thick,
+        "water_diffusive": thick * matter.continuity.diffused.to_numpy().reshape(len(mass), -1).sum(axis=1),
+        "water_work": (work + by_parts.sum(axis=1)) * thick,
+        "water_wall_energy": stored * thick,
+        "water_density_deviation": sums["deviation"],
+        "level_depth": matter.diagnostics.level_depth.to_numpy()[:, : matter.diagnostics.levels],
+        "water_escaped": sums["escaped"],
+        **matter.gauges.read_and_reset(),
+        **matter.edges.read_and_reset(),
+        **matter.bodies.read_and_reset(time, thick, by_parts),
+    }
+    return rows

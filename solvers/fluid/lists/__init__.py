@@ -1,0 +1,1 @@
+"""Which particles of water are near each other: cells, their order in memory, neighbour lists."""
