@@ -1,8 +1,7 @@
 """Restitution of damped contacts as a function of damping, and the inverse. A contact ends when its force vanishes."""
 
 from collections.abc import Callable
-from functools import cache, wraps
-from math import acos, acosh, exp, log, sqrt
+from functools import wraps
 
 # Powers of the overlap ξ to which the damping of a Hertz contact is proportional.
 VISCOELASTIC = 0.5  # Brilliantov et al. (1996)
@@ -78,22 +77,3 @@ def dissipative_time_for(e: float, speed: float, stiffness: float, mass: float) 
 def restitution_from(time: float, speed: float, stiffness: float, mass: float) -> float:
     """The restitution at an impact speed (m/s) that a dissipative time A (s) gives, k in N/m^1.5, m_eff in kg."""
     return restitution(1.5 * time * (stiffness / mass) ** 0.4 * speed**0.2)
-
-
-def linear_restitution(ratio: float) -> float:
-    """Restitution of a linear spring and dashpot of damping ratio ζ (Schwager and Pöschel 2007).
-
-    e = exp(−2 ζ θ) with θ = arccos ζ/√(1 − ζ²), which is arcosh ζ/√(ζ² − 1) past critical damping.
-    """
-    root = sqrt(abs(1.0 - ratio * ratio))
-    if root < 1e-6:
-        return exp(-2.0)
-    return exp(-2.0 * ratio * (acos(ratio) if ratio < 1.0 else acosh(ratio)) / root)
-
-
-@cache
-def damping_ratio_for(e: float) -> float:
-    """The damping ratio ζ of a linear spring and dashpot that gives restitution e."""
-    from scipy.optimize import brentq
-
-    return brentq(lambda ratio: log(linear_restitution(ratio) / e), 0.0, 1.0 + 1.0 / sqrt(e), xtol=1e-13)

@@ -2,15 +2,15 @@
 
 import taichi as ti
 
-from solvers.grains.laws.history import M_T, STIFFEST, over_the_step, stiffening
+from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
-from solvers.machine.wide import entry, minus
+from solvers.machine.wide import entry
 from solvers.space.axes import dot
 from solvers.space.extremes import within
-from solvers.space.tangent import capped
+from solvers.space.impact import dragged, over_the_step, stretched
 
 
 @ti.data_oriented
@@ -63,15 +63,13 @@ class CundallStrack:
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, spring = c[0] * normal, contacts.shear_spring[w, block]
         turns = ti.static(range(len(slip)))
-        begins, since = root * root < rate * dt, root * root / rate
         sliding = [over_the_step(slip[k], contacts.sliding[k][w, block], self.integrator.ahead) for k in turns]
-        gone = [ti.select(begins, slip[k] * since, sliding[k] * dt) for k in turns]
-        held = capped([contacts.stretched[k][w, block] + spring * gone[k] for k in turns], cap)
+        before = [contacts.stretched[k][w, block] for k in turns]
+        held = stretched(before, spring, root * root, rate, slip, sliding, cap, dt)
         for k in ti.static(turns):
             contacts.stretched[k][w, block] = held[k]
             contacts.sliding[k][w, block] = ti.select(root > 0.0, sliding[k], 0.0 * sliding[k])
-        dashpot = contacts.shear_dashpot[w, block]
-        return capped([minus(held[k]) - dashpot * slip[k] for k in turns], cap)
+        return dragged(held, contacts.shear_dashpot[w, block], slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

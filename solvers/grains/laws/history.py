@@ -27,9 +27,3 @@ STIFFEST = 0.1  # largest relative change of a spring: more only at steps far to
 def stiffening(stiffer, mass, step):
     """Relative stiffening per unit of stiffness (m/N) of a spring in a contact of m_eff (kg) at a step (s)."""
     return stiffer * step * step / (M_T * mass)
-
-
-@ti.func
-def over_the_step(slip, before, ahead):
-    """Slip (m/s) over the step that ended, from the predicted one and that over the step before (0: a new contact)."""
-    return ti.select(before == 0.0, slip, (slip + ahead * before) * (1.0 / (1.0 + ahead)))

@@ -5,12 +5,10 @@ from math import pi, sqrt
 import taichi as ti
 
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
-from solvers.grains.laws.splitting import felt_rate
 from solvers.grains.materials import Interface, hertz_stiffness
-from solvers.grains.restitution import damping_ratio_for
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry
-from solvers.space.extremes import greater
+from solvers.space.impact import damping_ratio_for, pressed
 
 # Steps per half undamped period, at least and times ζ: measured with `felt_rate`, restitution 0.02 … 1 right to 0.1 %.
 STEPS, DAMPED_STEPS = 52.0, 240.0
@@ -60,8 +58,7 @@ class Linear:
     @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, approach, overlap, root, rate, dt):
         """F_n (N) of a block of contacts from the overlap ξ (m) and its rate ξ̇ (m/s)."""
-        dashpot = contacts.dashpot[w, block] * felt_rate(overlap, rate, dt)
-        return greater(contacts.spring[w, block] * overlap + dashpot, 0.0)
+        return pressed(contacts.spring[w, block], contacts.dashpot[w, block], overlap, rate, dt)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, overlap, root):

@@ -4,13 +4,14 @@ from math import sqrt
 
 import taichi as ti
 
-from solvers.grains.laws.history import M_T, STIFFEST, over_the_step, stiffening
+from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
-from solvers.machine.wide import entry, minus
+from solvers.machine.wide import entry
 from solvers.space.axes import dot
 from solvers.space.extremes import greater, lesser, within
+from solvers.space.impact import dragged, over_the_step
 from solvers.space.tangent import capped
 
 RESOLVED = 0.09  # (ω_t Δt)², for a slip right to 1.2 %
@@ -90,7 +91,7 @@ class Mindlin:
             contacts.sliding[k][w, block] = ti.select(root > 0.0, sliding[k], 0.0 * sliding[k])
         contacts.root_before[w, block] = root
         dashpot = lesser(c[2] * spring, greater(contacts.shear_limit[w, block] - 0.25 * stiff * dt, 0.0))
-        return capped([minus(held[k]) - dashpot * slip[k] for k in turns], cap)
+        return dragged(held, dashpot, slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

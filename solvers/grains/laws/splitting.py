@@ -4,7 +4,7 @@ from math import inf, sqrt
 
 import taichi as ti
 
-from solvers.space.extremes import greater, lesser
+from solvers.space.extremes import greater
 from solvers.space.tangent import capped
 
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
@@ -67,16 +67,3 @@ def lagging(damping, share, velocity, lag, room):
     """
     turns = ti.static(range(len(lag)))
     return capped([lag[k] + share * (damping * velocity[k] - lag[k]) for k in turns], room)
-
-
-@ti.func
-def felt_rate(overlap, rate, dt):
-    """Rate of overlap (m/s) for a dashpot that acts at full strength from first touch.
-
-    A contact begins somewhere inside a step. With r = ξ/Δt, min(3r/2, max(ξ̇, 2ξ̇ − r/2)) gives the first two kicks of
-    a new contact the total impulse of the dashpot since first touch; afterwards it is ξ̇. Without this correction the
-    error of the restitution is proportional to the step, and twelve times as large at 50 steps a collision. Grains that
-    do not overlap feel no dashpot.
-    """
-    crossed = overlap / dt
-    return lesser(1.5 * crossed, greater(rate, 2.0 * rate - 0.5 * crossed))

@@ -6,7 +6,7 @@ import pytest
 from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.references import damping_of, dissipative_time, hertz_stiffness, sphere_mass
 from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
-from solvers.grains.restitution import damping_ratio_for
+from solvers.space.impact import damping_ratio_for
 
 RADIUS, SPEED, FRICTION = 1.5e-3, 1.0, 0.25
 SLIPS = FRICTION * np.array([0.5, 1.5, 2.5, 3.5, 5.0, 8.0])  # m/s along the wall

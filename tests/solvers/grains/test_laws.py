@@ -12,11 +12,12 @@ from scipy.special import beta
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.laws.chosen import PAIR, ChosenLaws
 from solvers.grains.materials import hertz_stiffness, interface
-from solvers.grains.restitution import CONSTANT, FIRST_ORDER, VISCOELASTIC, damping_for, linear_restitution, restitution
+from solvers.grains.restitution import CONSTANT, FIRST_ORDER, VISCOELASTIC, damping_for, restitution
 from solvers.machine import runtime
 from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.space.impact import linear_restitution
 from tests.oracles.axes import axes
 from tests.oracles.scenes import material
 

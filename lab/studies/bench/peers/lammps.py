@@ -29,7 +29,7 @@ import numpy as np
 from lab.studies.bench.peers.peer import MOTION, PeerRun, Task, carry_out
 from solvers.grains.laws.splitting import AT_ONCE
 from solvers.grains.materials import Interface, hertz_stiffness, interface
-from solvers.grains.restitution import damping_ratio_for
+from solvers.space.impact import damping_ratio_for
 
 NAME = "LAMMPS"
 EXECUTABLE = "lmp"
