@@ -14,6 +14,7 @@ from solvers.machine.marks import EachWorld, NotOfBed, in_one_launch, shared
 from solvers.matters import limits_of
 from solvers.motion.axle import Axle
 from solvers.motion.carrier import limits_of_carrier, shares_of_loads
+from solvers.motion.contact_pairs import limits_of_contacts
 from solvers.ship.vessel import Vessel
 from solvers.tank.given import Given
 from solvers.tank.parts import Part
@@ -122,11 +123,16 @@ class Scene:
     def shares(self) -> np.ndarray | None:
         """Factors (W, pieces) from each piece's load to that which the tanks' carrier responds to; None if none does.
 
-        They are zero where only parts respond, each to the load on itself.
+        They are zero of parts that move freely, since each responds to the load on itself.
         """
         more = [part.tank for part in self.parts] + [0] * sum(matter.pieces for matter in self.matters)
         found = shares_of_loads(self.tanks, self.vessels, self.axles, more)
-        return np.zeros((self.worlds, self.pieces)) if found is None and self.responds else found
+        if found is None and self.responds:
+            return np.zeros((self.worlds, self.pieces))
+        free = [len(self.tanks) + k for k, part in enumerate(self.parts) if part.free]
+        if free:
+            found[:, free] = 0.0
+        return found
 
     @property
     def responds(self) -> bool:
@@ -150,10 +156,14 @@ class Scene:
 
     def credible_speed(self) -> float:
         """Highest closing speed (m/s) to be expected: of a fall through the tank, or the tank's or a part's own."""
-        corners = np.concatenate([tank.outline for tank in self.tanks])
-        height = np.ptp(corners[:, 1])
+        height = np.ptp(np.concatenate([tank.outline for tank in self.tanks])[:, 1])
         starts = (matter.start_speed for matter in self.matters)
-        speed = max(*starts, *(part.fastest() for part in self.parts), float(np.sqrt(2.0 * self.gravity * height)), 0.0)
+        return max(*starts, float(np.sqrt(2.0 * self.gravity * height)), self.driven_speed(), 0.0)
+
+    def driven_speed(self) -> float:
+        """Highest speed (m/s) of the tank's or a part's own, where motions prescribe it."""
+        corners = np.concatenate([tank.outline for tank in self.tanks])
+        speed = max((part.fastest() for part in self.parts), default=0.0)
         for motion in (m for world in self.motions for m in world):
             fastest, lever = motion.fastest(self.soft_start), 1.0
             if motion.coordinate == "turn":
@@ -170,6 +180,7 @@ class Scene:
         """
         closing = max(self.credible_speed() if speed is None else speed, SLOWEST)
         bounds = limits_of(self, closing) or limits_of_carrier(self.vessels, self.axles, self.gravity)
+        bounds = [*bounds, *limits_of_contacts(self, self.driven_speed())]
         return sorted(bounds, key=lambda limit: limit.step)
 
     def longest_step(self, longer: float) -> float:

@@ -80,19 +80,19 @@ class Simulation:
         scene, worlds = self.scene, self.scene.worlds
         self.arrays = arrays = State(scene.precision)
         self.carrier = make_carrier(arrays, scene, self.dt)
-        self.parts = make_pieces(arrays, scene.parts, self.carrier, worlds, len(scene.tanks))
+        self.parts = make_pieces(arrays, scene, self.carrier, self.dt)
         self.walls = Walls(arrays, scene.tanks, self.parts, scene.apart)
         context = context_of(self)
         matters = made(scene, context)
         self.matters = {matter.name: matter for matter in matters}
-        loads = [matter.load for matter in matters]
+        loads = [*(matter.load for matter in matters), *self.parts.bodies.own_loads]
         for carrier in (self.carrier, self.parts.bodies):
             carrier.bear(loads)
         self.clock = Clock(arrays, context.units(max((matter.in_bands for matter in scene.matters), default=0)))
         sequence = Sequence(matters, self.carrier, self.parts)
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, loads)
+        self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, self.parts, loads)
         arrays.finish()
 
     @property
@@ -213,7 +213,7 @@ class Simulation:
         still = ended | (self.observed == self.steps)
         for name, before in self.means.items():
             rows[name] = np.where(still.reshape(-1, *[1] * (before.ndim - 1)), before, rows[name])
-        rows |= self.carrier.account(rows) | self.parts.bodies.account(rows["pose"], self.scene.gravity)
+        rows |= self.carrier.account(rows) | self.parts.bodies.account(rows["pose"], self.scene.gravity, now)
         self.observed, self.means = self.steps, {name: rows[name] for name in self.means}
         for matter in self.matters.values():
             matter.check(rows, self.time)

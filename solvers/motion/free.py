@@ -47,7 +47,7 @@ class FreeBodies:
         free = [k for k, part in enumerate(pieces.parts) if part.free]
         self.pieces, self.count, self.worlds, self.first = pieces, len(free), pieces.worlds, first
         self.parts, self.loads, self.exact = free, (), arrays.exact
-        self.phases = (Phase(self.follow),) if free else ()
+        self.phases, self.opening, self.own_loads = (Phase(self.follow),) if free else (), (), ()
         if not free:
             return
         own, of_part = arrays.under("free"), np.full(pieces.count, NOT_FREE)
@@ -63,8 +63,12 @@ class FreeBodies:
         self.work, self.behind = own.reals(each, "work", "behind", kind=own.exact)
         (self.state,) = own.integers(each, "state")
 
+    def join(self, contacts) -> None:
+        """Take the `contacts` of the bodies, which are found as a step opens."""
+        self.contacts, self.opening, self.own_loads = contacts, contacts.phases, (contacts.load,)
+
     def bear(self, loads: Sequence[Load]) -> None:
-        """Respond to these loads from now on, those of all matters."""
+        """Respond to these loads from now on, those of all matters and of contacts."""
         self.loads = tuple(loads)
 
     def hold_all(self) -> None:
@@ -75,9 +79,10 @@ class FreeBodies:
             for field, column in zip(self.place, (CENTRE_Y, CENTRE_Z), strict=False):
                 field.from_numpy(np.tile(self.rows[:, column], (self.worlds, 1)))
             self.state.fill(HELD)
+            self.contacts.forget()
 
-    def account(self, pose: np.ndarray, gravity: float) -> dict[str, np.ndarray]:
-        """The quantities of each body (W, bodies, …) in tanks at these poses (W, 3): `tank.quantities.OF_BODIES`."""
+    def account(self, pose: np.ndarray, gravity: float, time: float) -> dict[str, np.ndarray]:
+        """The quantities of bodies in tanks at these poses (W, 3), at a time (s) that is now: `quantities.OF_BODIES`."""
         if not self.count:
             return {}
         place = np.stack([field.to_numpy() for field in self.place], axis=-1)
@@ -91,6 +96,7 @@ class FreeBodies:
             "body_velocity": velocity,
             "body_energy": kinetic + mass * gravity * height,
             "body_work": self.work.to_numpy().astype(float),
+            **self.contacts.account(time),
         }
 
     @ti.func
@@ -188,6 +194,8 @@ class FreeBodies:
         before = ti.Vector([self.velocity[k][w, i] for k in ti.static(range(3))])
         mean = before + (during - 0.5 * step) * a  # as the step begins
         self.work[w, i] = self.work[w, i] + load.dot(mean) * during
+        in_tank = mean - self.tank_speed(w, 3, self.place[0][w, i], self.place[1][w, i])
+        self.contacts.book(w, i, in_tank, during)
         u, arm, farthest = before + during * a, self.table[i, ARM], ti.cast(0.0, self.exact)
         y, z = self.place[0][w, i], self.place[1][w, i]
         u, a = self.drift(w, i, FIRST, u, a, 0.5 * step)

@@ -1,12 +1,11 @@
 """How parts move: the move of one along an axis, as a motion, and what carries each of them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import taichi as ti
 
 from solvers.machine.state import State
-from solvers.motion.free import FreeBodies
+from solvers.motion.contacts import make_bodies
 from solvers.motion.prescribed import Prescribed
 from solvers.tank.parts import Part, travel
 from solvers.tank.pieces import Pieces
@@ -51,12 +50,15 @@ def motions_of(part: Part) -> tuple:
     return (*moves, *part.motions)
 
 
-def make_pieces(arrays: State, parts: Sequence[Part], carrier, worlds: int, tanks: int) -> Pieces:
-    """The parts of a scene as pieces in so many tanks that a carrier moves; only one that is driven has its own."""
-    moves = [[motions_of(part)] * worlds for part in parts]
+def make_pieces(arrays: State, scene, carrier, dt: float) -> Pieces:
+    """The parts of a `solvers.scene.Scene` as pieces, in tanks that a carrier moves in steps of dt (s).
+
+    Only one that is driven has a carrier of its own; those that are free have `FreeBodies`.
+    """
+    moves = [[motions_of(part)] * scene.worlds for part in scene.parts]
     carriers = [
         Prescribed(arrays.under(f"parts.{k}"), each, 0.0, 0.0) if each[0] else None for k, each in enumerate(moves)
     ]
-    pieces = Pieces(arrays, parts, carriers, worlds)
-    pieces.join(FreeBodies(arrays, pieces, carrier, tanks))
+    pieces = Pieces(arrays, scene.parts, carriers, scene.worlds)
+    pieces.join(make_bodies(arrays, pieces, carrier, scene, dt))
     return pieces

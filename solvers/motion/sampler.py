@@ -8,21 +8,24 @@ import taichi as ti
 
 from solvers.machine.quantity import parted, places
 from solvers.machine.state import Axis, State
+from solvers.motion.free import NOT_FREE
 from solvers.tank import quantities as tank
 from solvers.tank.load import Load
+from solvers.tank.pieces import Pieces
 
 
 @ti.data_oriented
 class Sampler:
     """One row of numbers per world: pose and velocity of the tank, and the mean force on it since the last sample.
 
-    The force includes that on fixed grains and parts; its moment is about the tank's origin. `loads` are the loads of
-    all matters, each on `pieces`; without any the force is zero. `quantities` are the numbers' declarations, and `at`
+    The force includes that on fixed grains and on `parts`, as they are when it is read, but for those that move freely:
+    what these bear moves them. Its moment is about the tank's origin. `loads` are the loads of all matters and of
+    contacts, each on `pieces`; without any the force is zero. `quantities` are the numbers' declarations, and `at`
     has the column in which each begins.
     """
 
-    def __init__(self, arrays: State, worlds: int, pieces: int, carrier, loads: Sequence[Load]):
-        self.worlds, self.carrier, self.loads = worlds, carrier, tuple(loads)
+    def __init__(self, arrays: State, worlds: int, pieces: int, carrier, parts: Pieces, loads: Sequence[Load]):
+        self.worlds, self.carrier, self.parts, self.loads = worlds, carrier, parts, tuple(loads)
         self.exact, self.pieces = arrays.exact, pieces
         self.quantities = tank.SERIES
         self.at = SimpleNamespace(**places(self.quantities))
@@ -56,7 +59,8 @@ class Sampler:
                     for k in ti.static(range(3)):
                         mean = impulse[k] / ti.cast(since, self.exact)
                         self.on_pieces[w, piece, k] = self.on_pieces[w, piece, k] + mean
-                    total += impulse
+                    if self.bears(w, piece):
+                        total += impulse
         pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
         if ti.static(self.carrier.moving):
             pose = self.carrier.kinematics(w, time)
@@ -64,3 +68,13 @@ class Sampler:
             self.rows[w, self.at.pose + k] = pose[k]
             self.rows[w, self.at.pose_rate + k] = pose[3 + k]
             self.rows[w, self.at.wall_force + k] = total[k] / ti.cast(since, self.exact)
+
+    @ti.func
+    def bears(self, w, piece):
+        """Whether the tank bears the load on a piece, now."""
+        found = True
+        if ti.static(self.parts.floats):
+            part = piece - self.parts.bodies.first
+            if 0 <= part < self.parts.count:
+                found = self.parts.bodies.loose(w, part) == NOT_FREE
+        return found

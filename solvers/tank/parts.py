@@ -77,13 +77,16 @@ class Part:
 class Free:
     """What a part that moves freely is: its `mass` (kg) and `inertia` (kg m²) about the `centre` of mass (m), as drawn.
 
-    Mass and inertia are those of the slab that the tank is thick. It is held until `release` (s).
+    Mass and inertia are those of the slab that the tank is thick. It is held until `release` (s). `friction` and
+    `restitution` are those of its surface and a wall.
     """
 
     mass: float
     inertia: float
     centre: tuple[float, float]
     release: float = 0.0
+    friction: float = 0.3
+    restitution: float = 0.3
 
 
 @dataclass(frozen=True)

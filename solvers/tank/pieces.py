@@ -34,7 +34,7 @@ class Pieces:
         turning = (carrier is not None and carrier.rotating for carrier in carriers)
         self.turns = [free or turns for free, turns in zip(self.free, turning, strict=True)]
         self.floats = any(self.free)
-        self.bodies, self.phases, self.has_multiples = None, (), not self.floats
+        self.bodies, self.opening, self.phases, self.has_multiples = None, (), (), not self.floats
         self.moving, self.turning = any(self.moves), any(self.turns)
         self.fastest = max((part.fastest() for part in parts), default=0.0)  # m/s
         self.size = NUMBERS if self.turning else COSINE  # of a pose, as `at` tells it
@@ -53,7 +53,7 @@ class Pieces:
 
     def join(self, bodies) -> None:
         """Take the free `bodies` among the pieces, which move once the loads of a step are known."""
-        self.bodies, self.phases = bodies, bodies.phases
+        self.bodies, self.opening, self.phases = bodies, bodies.opening, bodies.phases
 
     @ti.func
     def at(self, w, t):

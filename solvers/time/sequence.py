@@ -14,13 +14,13 @@ CHECK_EVERY = 64  # base steps between two checks whether steps may be longer
 class Sequence:
     """The step that every schedule runs, for worlds that hold `matters` and `pieces` and are moved by a `carrier`.
 
-    A step of a world at time t (s) is: every phase of `before`, in which matters compute their forces and book those on
-    the tank; the carrier's, which responds to that load; every phase of `between`, in which matters note how the tank
-    will move; those of the pieces that are free, which respond to their loads; the carrier's frame; every phase of
-    `after`, in which matters move. A matter whose steps are longer
-    (`Phase.every`) computes its forces in the first of a few steps and moves in the last one, once it is known how the
-    tank has moved through all of them; its load stands in between (`Load`). A step is a `multiple` of the base step,
-    which changes only when all lists are rebuilt, to the least that any matter or the carrier allows
+    A step of a world at time t (s) is: the `opening` of pieces that are free, in which they touch others; every
+    phase of `before`, in which matters compute their forces and book those on the tank; the carrier's, which responds
+    to that load; every phase of `between`, in which matters note how the tank will move; those of free pieces, which
+    respond to their loads; the carrier's frame; every phase of `after`, in which matters move. A matter whose steps are
+    longer (`Phase.every`) computes its forces in the first of a few steps and moves in the last one, once it is known
+    how the tank has moved through all of them; its load stands in between (`Load`). A step is a `multiple` of the base
+    step, which changes only when all lists are rebuilt, to the least that any matter or the carrier allows
     (`allowed_multiple`), and never overshoots the target. Since a quiet world seldom rebuilds its lists, it is checked
     every CHECK_EVERY base steps whether it may take longer ones. What a matter must offer is in `solvers.tank.matter`.
     """
@@ -29,6 +29,7 @@ class Sequence:
         self.matters, self.carrier = tuple(matters), carrier
         pushing = (phase for matter in matters for phase in matter.before)
         self.before: tuple[Phase, ...] = (
+            *pieces.opening,
             *pushing,
             *carrier.phases,
             *(p for m in matters for p in m.between),

@@ -85,8 +85,9 @@ class Bodies:
 
     @ti.func
     def note(self, w, t, dt):
-        """Note how the parts of a world move in the step of dt (s) from time t (s)."""
-        self.pieces.note(w, t, dt)
+        """Note how the parts of a world move in the step of dt (s) from time t (s), unless contacts did."""
+        if ti.static(not self.floats):
+            self.pieces.note(w, t, dt)
         if ti.static(len(self.visibility.plates) > 0):
             self.visibility.note(w, self.poses)
         if ti.static(self.hulls.openings > 0):
