@@ -12,6 +12,7 @@ import pytest
 from solvers.fluid.given import Fluid, Water
 from solvers.fluid.start.parts import clear_of
 from solvers.motion import contact_pairs
+from solvers.motion.axle import Axle
 from solvers.motion.contact_pairs import Touch
 from solvers.motion.harmonic import Sway
 from solvers.scene import Scene
@@ -280,6 +281,23 @@ def test_a_smooth_body_slides_in_a_round_tank_like_a_pendulum():
     kept = found["part_energy"][0, 0] + found["contact_elastic"][0]
     least = part.free.mass * GRAVITY * ball
     assert kept == pytest.approx(energy, abs=2e-3 * (energy - least))  # twice (ω Δt)²/24, as of a bounce
+
+
+def test_an_axle_feels_a_free_body_by_its_contacts_alone():
+    # The tank is so heavy that it hardly turns: its moment is that of the body's weight.
+    part = free(block(0.4, 0.2, (1.0, 0.1)))
+    scene = dry([part], 2e-4, gravity=GRAVITY, axles=[Axle((0.0, 0.0), 1e9, 0.0)])
+    assert scene.shares.tolist() == [[1.0, 0.0]]
+    run = Simulation(scene, threads=1)
+    run.advance(2000)
+    run.observe()
+    run.advance(1000)
+    found = run.observe()
+    run.close()
+    moment = -GRAVITY * part.free.mass
+    assert found["axle_moment"][0] == pytest.approx(moment, rel=1e-3)
+    inertia = 1e9 * found["pose_rate"][0, 2] / run.time
+    assert inertia == pytest.approx(moment, rel=0.01)
 
 
 def test_bodies_pass_plates_and_what_is_held_pushes_nothing():
