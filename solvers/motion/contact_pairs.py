@@ -73,9 +73,10 @@ class Touch:
 
     The spring is k = min(m/2, 2 m_c) (π/(N Δt))² with N = max(28, 56 ζ), where 1/m is the sum of both bodies' inverse
     masses, and 1/m_c that of 1/m + r²/I, r from the centre to the farthest corner. So half an undamped oscillation
-    takes N steps Δt if a face of a body lands on both its ends, and N/√2, at least 20, if one corner does, wherever it
-    is. ζ is the damping ratio that the restitution needs (`damping_ratio_for`). The tangential spring is k_t = k 2(1 −
-    ν)/(2 − ν), ν = 0.3. Friction and restitution of two free bodies are the means of theirs, else those of the body.
+    takes N steps Δt or more if a face of a body lands on both its ends, and N/√2, at least 20, if one corner does,
+    wherever it is. ζ is the damping ratio that the restitution needs (`damping_ratio_for`). The tangential spring is
+    k_t = k 2(1 − ν)/(2 − ν), ν = 0.3. Friction and restitution of two free bodies are the means of theirs, else those
+    of the body.
     """
 
     one: Part | None

@@ -31,10 +31,11 @@ class Contacts:
     springs of `Touch`, and γ = 2 ζ √(k m_j), γ_t = (γ/k) k_t. As m_j is that mass which a contact accelerates if all
     contacts of both bodies push alike,
 
-        1/m_j = Σ over both bodies of n_j·Σ n_i/m + l_j Σ l_i/I,
+        1/m_j = n_j·Σ n_i/m + l_j Σ l_i/I,
 
-    with the levers l of the normals n about the centre, at least half of n_j²/m + l_j²/I (own derivation: the row of
-    the contacts' inverse mass matrix J M⁻¹ Jᵀ), the restitution is the same on one corner and on several.
+    added up for both bodies, with the levers l of the normals n about the centre (own derivation: the row of the
+    contacts' inverse mass matrix J M⁻¹ Jᵀ), but at least half of n_j²/m + l_j²/I, the restitution is the same on one
+    corner and on several.
 
     What bodies lose to contacts is counted by their own velocities, in the tank, as that which they gain from all loads
     (`FreeBodies.work`). What of it is not kept as elastic energy is lost to dashpots and friction.
@@ -43,7 +44,9 @@ class Contacts:
     give (`FreeBodies.velocity_with`). Both partners get the same load about the tank's origin, with opposite signs.
     Bodies that are held, and walls, push each other by nothing.
 
-    Limits: all partners of a body are searched at every step, by their boxes first. Thin plates are not touched.
+    Limits: all partners of a body are searched at every step, by their boxes first. Thin plates are not touched. A body
+    on more than two corners at once is that much stiffer, with less exact a restitution. No particle of water gets
+    between faces that lie on each other: the water above presses them together, as in a seal.
     """
 
     def __init__(self, arrays: State, scene, bodies: FreeBodies, dt: float):
@@ -128,12 +131,11 @@ class Contacts:
     @ti.func
     def arms(self, w, c, pair):
         """Normal, and its levers about the centres of both partners, with the sign that all contacts of these share."""
-        sign = 1.0 if self.table[pair, OWNER] < self.table[pair, OTHER] else -1.0
-        n_y, n_z = sign * self.search.found[w, c, N_Y], sign * self.search.found[w, c, N_Z]
-        lower = ti.min(self.search.places[pair, OWNER], self.search.places[pair, OTHER])
-        upper = ti.max(self.search.places[pair, OWNER], self.search.places[pair, OTHER])
-        one, two = self.inverse_masses(w, lower), self.inverse_masses(w, upper)
-        p_y, p_z = self.search.found[w, c, P_Y], self.search.found[w, c, P_Z]
+        found, of = ti.static(self.search.found, self.search.places)
+        owner, other = of[pair, OWNER], of[pair, OTHER]
+        sign = 1.0 if owner < other else -1.0
+        n_y, n_z, p_y, p_z = sign * found[w, c, N_Y], sign * found[w, c, N_Z], found[w, c, P_Y], found[w, c, P_Z]
+        one, two = self.inverse_masses(w, ti.min(owner, other)), self.inverse_masses(w, ti.max(owner, other))
         lever = (p_y - one[2]) * n_z - (p_z - one[3]) * n_y
         back = (p_y - two[2]) * n_z - (p_z - two[3]) * n_y
         return ti.Vector([n_y, n_z, lever, back, one[0] + two[0], one[1], two[1]])
@@ -168,16 +170,10 @@ class Contacts:
         pair = self.search.pair(c)
         inverse = self.inverse_mass(w, c, pair)
         if inverse > 0.0:
-            n_y, n_z, y, z = (
-                self.search.found[w, c, N_Y],
-                self.search.found[w, c, N_Z],
-                self.search.found[w, c, P_Y],
-                self.search.found[w, c, P_Z],
-            )
-            v = self.velocity(w, self.search.places[pair, OWNER], y, z) - self.velocity(
-                w, self.search.places[pair, OTHER], y, z
-            )
-            overlap, rate, slip = self.search.found[w, c, OVERLAP], -(v[0] * n_y + v[1] * n_z), v[1] * n_y - v[0] * n_z
+            found, of = ti.static(self.search.found, self.search.places)
+            n_y, n_z, y, z = found[w, c, N_Y], found[w, c, N_Z], found[w, c, P_Y], found[w, c, P_Z]
+            v = self.velocity(w, of[pair, OWNER], y, z) - self.velocity(w, of[pair, OTHER], y, z)
+            overlap, rate, slip = found[w, c, OVERLAP], -(v[0] * n_y + v[1] * n_z), v[1] * n_y - v[0] * n_z
             spring, shear = self.table[pair, SPRING], self.table[pair, SHEAR_SPRING]
             dashpot, before = self.table[pair, TWICE_RATIO] * ti.sqrt(spring / inverse), self.memory[w, c, HELD_FORCE]
             pushed = pressed(spring, dashpot, overlap, rate, step)

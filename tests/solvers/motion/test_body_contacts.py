@@ -93,6 +93,22 @@ def test_a_bounce_through_the_centre_has_the_restitution_asked_for():
     assert np.abs(after[:, [0, 2]]).max() < 1e-9  # straight up
 
 
+def test_two_bodies_bounce_off_each_other_with_the_mean_of_their_restitutions():
+    # Equal faces: each corner of one lies on a corner of the other, so that there are four contacts, of 20 steps.
+    lower, upper = (
+        free(block(0.5, 0.3, (0.0, 0.5)), restitution=0.4),
+        free(block(0.5, 0.6, (0.0, 1.0)), restitution=0.6),
+    )
+    run = Simulation(dry([lower, upper], 1e-4, gravity=0.0), threads=1)
+    run.advance(1)
+    run.parts.bodies.velocity[1].from_numpy(np.array([[0.0, -1.0]]))
+    run.advance(1000)
+    _, speed = bodies_of(run)
+    run.close()
+    ends = np.array([(1.0 + 0.5) * 2.0 / 3.0, (2.0 - 0.5) / 3.0])  # masses as 1 to 2
+    assert -speed[:, 1] == pytest.approx(ends, rel=0.01)
+
+
 def tumbling(dt: float) -> float:
     """Relative change of bodies' energies in bounces without losses or friction, r.m.s.
 
