@@ -174,6 +174,8 @@ class Scene:
     def step_limits(self, speed: float | None = None) -> list[Limit]:
         """Bounds on the step, the tightest first: those of the matters, without any those of ships or axles.
 
+        In water those of free bodies' contacts are among them.
+
         Particles meet at up to `speed` (m/s), by default the credible one. Without matters and ships there are none:
         prescribed motions are exact at any time. With grains the ships need none of their own, since the forces of the
         sea are updated every few steps.

@@ -52,7 +52,7 @@ class Pieces:
             self.drawn = own.holding("drawn", drawn, "part corner direction", own.exact)
 
     def join(self, bodies) -> None:
-        """Take the free `bodies` among the pieces, which move once the loads of a step are known."""
+        """Take the free `bodies` among the pieces, which touch as a step opens, and move once its loads are known."""
         self.bodies, self.opening, self.phases = bodies, bodies.opening, bodies.phases
 
     @ti.func
