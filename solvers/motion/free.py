@@ -82,7 +82,7 @@ class FreeBodies:
             self.contacts.forget()
 
     def account(self, pose: np.ndarray, gravity: float, time: float) -> dict[str, np.ndarray]:
-        """The quantities of bodies in tanks at these poses (W, 3), at a time (s) that is now: `quantities.OF_BODIES`."""
+        """The quantities of bodies in tanks at these poses (W, 3), at a time (s), which is now: `OF_BODIES`."""
         if not self.count:
             return {}
         place = np.stack([field.to_numpy() for field in self.place], axis=-1)

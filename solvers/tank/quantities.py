@@ -36,6 +36,8 @@ OF_BODIES = (
         "body_energy", "J", label="kinetic and potential energy of each floating body, over the earth", per="body"
     ),
     Quantity("body_work", "J", label="work of all that pushes each floating body, since its release", per="body"),
+    Quantity("contact_elastic", "J", label="elastic energy of the contacts of floating bodies"),
+    Quantity("contact_lost", "J", label="energy that contacts of floating bodies have taken since the start"),
 )
 OF_AXLE = (
     Quantity("axle_moment", "N m", label="moment of the cargo on the whole tank about the axle", mean=True),

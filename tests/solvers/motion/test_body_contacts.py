@@ -123,14 +123,14 @@ def tumbling(dt: float) -> float:
     run.advance(int(sqrt(2.0 * FALL / GRAVITY) / dt) - 3)
     run.alter(replace(scene, gravity=0.0))
     run.advance(1)
-    start = run.observe()["part_energy"][0]
+    start = run.observe()["body_energy"][0]
     run.advance(round(0.03 / dt))
     found = run.observe()
     run.close()
     assert found["contact_elastic"] == 0.0  # all are off the floor
-    lost = start.sum() - found["part_energy"].sum()
+    lost = start.sum() - found["body_energy"].sum()
     assert found["contact_lost"][0] == pytest.approx(lost, abs=1e-9 * start.sum())
-    return np.sqrt(np.mean((found["part_energy"][0] / start - 1.0) ** 2))
+    return np.sqrt(np.mean((found["body_energy"][0] / start - 1.0) ** 2))
 
 
 def test_a_bounce_without_losses_keeps_the_energy_to_second_order(monkeypatch):
@@ -282,7 +282,7 @@ def test_a_smooth_body_slides_in_a_round_tank_like_a_pendulum():
     part = free(disc(48, ball, centre, 0.013), friction=0.0, restitution=1.0)
     run = Simulation(dry([part], 1e-4, disc(96, radius, (0.0, radius), -0.5 * pi), gravity=GRAVITY), threads=1)
     times, places = [], []
-    energy = run.observe()["part_energy"][0, 0]
+    energy = run.observe()["body_energy"][0, 0]
     for _ in range(160):
         run.advance(250)
         times.append(run.time)
@@ -294,7 +294,7 @@ def test_a_smooth_body_slides_in_a_round_tank_like_a_pendulum():
     period = 2.0 * pi * sqrt(long / GRAVITY) * (1.0 + angle**2 / 16.0)
     # Facets of the disc raise it by up to 0.4 mm, on which it hops: 1.2 % of the 36 mm that it falls.
     assert np.diff(crossed) == pytest.approx(period, rel=0.012)
-    kept = found["part_energy"][0, 0] + found["contact_elastic"][0]
+    kept = found["body_energy"][0, 0] + found["contact_elastic"][0]
     least = part.free.mass * GRAVITY * ball
     assert kept == pytest.approx(energy, abs=2e-3 * (energy - least))  # twice (ω Δt)²/24, as of a bounce
 

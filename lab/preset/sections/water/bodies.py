@@ -15,7 +15,7 @@ from solvers.tank import parts as solved
 from solvers.tank.outline import area_below, moments
 from solvers.tank.tank import Tank
 
-FREE = "centre", "inertia", "release"  # keys of bodies that float alone
+FREE = "centre", "inertia", "release", "friction", "restitution"  # keys of bodies that float alone
 OF_HULLS = "rooms", "openings"  # keys of hulls alone
 Corners = Annotated[tuple[Point, ...], Unit("m")]
 
@@ -63,6 +63,16 @@ KEYS = [
         Annotated[float, Unit("s"), Interval(ge=0)],
         "When it is let go; until then it stands in the tank.",
         0.0,
+    ),
+    _key(
+        "friction",
+        Annotated[float | None, Interval(ge=0, le=10)],
+        f"Friction of what floats where it touches the tank or another body; {solved.Free.friction:g} without it.",
+    ),
+    _key(
+        "restitution",
+        Annotated[float | None, Interval(ge=0.05, le=1)],
+        f"Restitution there; {solved.Free.restitution:g} without it.",
     ),
     _key(
         "wall",
@@ -131,7 +141,8 @@ def freedom(part, thickness: float) -> solved.Free | None:
     area, centre, polar = even(part)
     mass = part.density * area * thickness if part.mass is None else part.mass
     inertia = mass * polar / area if part.inertia is None else part.inertia
-    return solved.Free(mass, inertia, part.centre or centre, part.release)
+    of_contacts = {name: getattr(part, name) for name in ("friction", "restitution") if getattr(part, name) is not None}
+    return solved.Free(mass, inertia, part.centre or centre, part.release, **of_contacts)
 
 
 def even(part) -> tuple[float, tuple[float, float], float]:
@@ -167,7 +178,7 @@ def faults(part) -> Iterator[tuple[str, str]]:
         yield from _faults_of_hull(part)
     if not floats(part):
         for key in FREE:
-            if getattr(part, key):
+            if getattr(part, key) not in (None, 0.0):
                 yield key, "goes with a body that floats; give its density, or leave this out"
         return
     if part.mass is not None and part.density is not None:
