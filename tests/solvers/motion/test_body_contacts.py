@@ -347,7 +347,8 @@ def sunken() -> Scene:
     return Scene(outline, (Fluid(Water(spacing=SPACING, sound_speed=sound), drops),), parts=(body,), thickness=1.0)
 
 
-@pytest.mark.parametrize("until", [4.0, pytest.param(60.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("until", [4.0, 60.0])
 def test_a_heavy_body_sinks_and_rests_on_a_slope_under_water(until):
     # It may go a twentieth of a spacing in that time: below it are few particles of water, or none, which come and go.
     scene = sunken()
