@@ -13,7 +13,7 @@ from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
-from lab.report import axle, coarse, grains, water
+from lab.report import coarse, free, grains, water
 from lab.report.ship import describe
 from solvers.fluid.timestep import steps_of_water
 from solvers.machine.runtime import available_cores, choose_arch
@@ -89,7 +89,8 @@ def sections(loaded: LoadedPreset) -> Sections:
         ("Scene", _scene(preset, scene)),
         ("Ship", _ship(preset, simulation)),
         ("Coarse grains", coarse.described(preset) if preset.grains else []),
-        ("Axle", axle.described(preset) if preset.axle else []),
+        ("Axle", free.described(preset) if preset.axle else []),
+        ("Bodies", free.bodies(preset)),
         ("Accuracy", accuracy),
         ("Accuracy of the water" if accuracy else "Accuracy", water.accuracy(preset) if preset.water else []),
         ("Step", _step(simulation)),
@@ -165,7 +166,7 @@ def _tank(preset, scene) -> str:
     lining = scene.grains.fixed if scene.grains else ()
     if len(lining):
         what.append(f"lined with {len(lining)} fixed grains")
-    moving = [f"{name} ({'moving' if part.fastest() else 'still'})" for name, part in preset.parts.items()]
+    moving = [f"{name} ({_moves(part)})" for name, part in preset.parts.items()]
     if moving:
         what.append(f"with {', '.join(moving)}")
     return ", ".join(what)
@@ -287,3 +288,8 @@ def _span(seconds: float) -> str:
     if seconds < 90:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def _moves(part) -> str:
+    """How a part moves, in a word."""
+    return "floating" if part.floats else "moving" if part.fastest() else "still"

@@ -68,7 +68,7 @@ def test_every_preset_of_the_lab_resolves_and_has_a_title_and_source(name):
     assert said.title.strip() and said.source.strip() and said.reports.strip()
     moving = [motion.fastest(said.motion.soft_start) for motion in said.motion.parts.values()]
     moving += [part.fastest() for part in said.parts.values()]
-    of_itself = said.ship or said.axle or said.bodies or said.water.region or said.water.flow
+    of_itself = said.ship or said.axle or said.bodies or said.openings or said.water.region or said.water.flow
     assert (any(moving) or of_itself) and said.duration > 0
 
 

@@ -1,9 +1,10 @@
-"""The section of `cargolab explain` on an axle: the tank's own swing, the water's first one, and what drives it."""
+"""Sections of `cargolab explain` on what moves freely: a tank on its axle, bodies that float, hulls and their rooms."""
 
-from math import pi, sqrt, tanh
+from math import inf, pi, sqrt, tanh
 
 from lab.preset.schema import Preset
 from lab.preset.sections.axle import Axle
+from lab.preset.sections.water.bodies import draught, rooms_of
 from lab.preset.units import show
 
 
@@ -50,3 +51,25 @@ def _slide(axle: Axle) -> str:
         fastest, hardest = slide.motion.fastest(slide.soft_start), slide.motion.hardest()
         return f"as {slide.file.name} has it, up to {show(fastest, 'm/s')} and {hardest:.3g} m/s²"
     return f"by {show(slide.amplitude, 'm')} with a period of {show(slide.period, 's')}"
+
+
+def bodies(preset: Preset) -> list[tuple[str, str]]:
+    """Rows on each body that floats and each hull, each a name and a text."""
+    rows = []
+    for name, part in preset.parts.items():
+        free = part.solved(0, preset.thickness).free
+        if free is not None:
+            y, z = free.centre
+            deep = draught(part, free.mass / (preset.water.density * preset.thickness))
+            sinks = "sinks" if deep == inf else f"floats {show(deep, 'm')} deep, upright as drawn"
+            what = f"{free.mass:.4g} kg and {free.inertia:.4g} kg m^2 about [{show(y, 'm')}, {show(z, 'm')}]; {sinks}"
+            rows.append((name, what + (f"; let go after {show(free.release, 's')}" if free.release else "")))
+        if part.wall is not None:
+            openings = [f"{hole} opens {_when(one.opens)}" for hole, one in part.openings.items()]
+            what = f"walls of {show(part.wall, 'm')}; rooms: {', '.join(rooms_of(part))}"
+            rows.append((f"hull of {name}", "; ".join([what, *openings])))
+    return rows
+
+
+def _when(opens: float) -> str:
+    return f"after {show(opens, 's')}" if opens else "at once"
