@@ -9,7 +9,7 @@ from lab.preset.find import load
 from lab.preset.merge import merged, nested
 from lab.preset.recorded import resolved_from, to_table
 from lab.preset.schema import Preset, resolve
-from lab.report.axle import described
+from lab.report.free import described
 from solvers.motion.harmonic import Sway
 from tests.oracles.presets import error_of
 
