@@ -55,7 +55,7 @@ def _check_inside(corners: np.ndarray, aft: float, forward: float, form: Form, w
     between = form.x[(form.x > aft) & (form.x < forward)]
     for x in (aft, *between, forward):
         for half, z in corners:
-            room = _half_breadth(form, float(x), float(z))
+            room = half_breadth(form, float(x), float(z))
             if half > room + SLACK * form.depth:
                 raise LabError(
                     f"{where}: it stands out of the hull at x {x:g}, y {half:g}, z {z:g} m, where her half-breadth is "
@@ -63,7 +63,7 @@ def _check_inside(corners: np.ndarray, aft: float, forward: float, form: Form, w
                 )
 
 
-def _half_breadth(form: Form, x: float, z: float) -> float:
+def half_breadth(form: Form, x: float, z: float) -> float:
     """Half-breadth (m) of the hull at a place, straight between stations; 0 below and above her."""
     k = int(np.clip(np.searchsorted(form.x, x) - 1, 0, len(form.x) - 2))
     share = (x - form.x[k]) / (form.x[k + 1] - form.x[k])
