@@ -7,11 +7,25 @@ from typing import TYPE_CHECKING
 from lab import __version__, dotted, resume, run, sweep
 
 if TYPE_CHECKING:
+    from lab.naval.flooding.results import Results
     from lab.naval.hull import Hull
     from lab.recording import Recording
     from lab.sweeps.calibration_report import Calibration
 
-__all__ = ["__version__", "calibrate", "explain", "hull", "open", "presets", "render", "resume", "run", "sweep", "view"]
+__all__ = [
+    "__version__",
+    "calibrate",
+    "explain",
+    "flood",
+    "hull",
+    "open",
+    "presets",
+    "render",
+    "resume",
+    "run",
+    "sweep",
+    "view",
+]
 
 
 def calibrate(
@@ -74,6 +88,24 @@ def hull(
 
     axes = Axes(scale, up, origin, mirror, close)
     return read_hull(file, density=density, fair=fair, stations=stations, axes=axes, lbp=lbp, ap=ap)
+
+
+def flood(case: Path | str, out: Path | str | None = None, *, video: bool = True, **overrides: object) -> "Results":
+    """Flood the ship of a case, a TOML file or one of the lab's own: `cargolab.flood("wing-tank").largest`.
+
+    `cargolab.flood("cabin-side", ship__vcg="57 mm")`; `time`, `heel`, `volume`, `deck_time`, `stages` and others are
+    fields of what it returns. With `out`, page and tables are written into that folder, with `video` the film, too.
+    """
+    from lab.naval.flooding.case import load_case
+    from lab.naval.flooding.results import compute
+
+    loaded = load_case(case, dotted(overrides))
+    results = compute(loaded)
+    if out is not None:
+        from lab.report.flooding.page import write
+
+        write(loaded, results, Path(out), video)
+    return results
 
 
 def presets(word: str = "") -> dict[str, str]:

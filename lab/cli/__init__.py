@@ -5,6 +5,7 @@ import click
 from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
+from lab.cli.flooding import cross_flooding, flood
 from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import schema
@@ -24,6 +25,7 @@ def main() -> None:
     cargolab view tilting/quick      run one live in a window and steer it
     cargolab explain tilting/quick   show what it simulates and what it will cost
     cargolab stability SHIP          judge her by the codes, without a run
+    cargolab flood CASE              let water into her rooms, by formula
     cargolab sweep shaking/sway ...  run one for many values of its keys
     cargolab resume DIR              continue an interrupted run or sweep
     """
@@ -34,7 +36,9 @@ for command in (
     bench,
     beside,
     calibrate,
+    cross_flooding,
     explain,
+    flood,
     gallery,
     hull,
     hydrodynamics,

@@ -16,6 +16,7 @@ ROOT = Path(__file__).parents[2]
 NAMES = {
     "calibrate": ("preset", "target", "vary", "out", "repeats", "quiet", "cluster", "overrides"),
     "explain": ("preset", "overrides"),
+    "flood": ("case", "out", "video", "overrides"),
     "hull": tuple(["file", "density", "fair", "lbp", "ap", "stations", "scale", "up", "origin", "mirror", "close"]),
     "open": ("path", "sound"),
     "presets": ("word",),

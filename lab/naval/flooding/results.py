@@ -8,7 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from lab.naval.flooding.build import Built
+from lab.naval.flooding.build import Built, build
+from lab.naval.flooding.case import LoadedCase
 from solvers.ship.flooding.balance import Pose
 from solvers.ship.flooding.openings import SEA
 from solvers.ship.flooding.residual import displacement, levers, metacentric_height, without
@@ -203,6 +204,12 @@ class Results:
         ship, aboard = self.lost_buoyancy
         last = self.moments[-1]
         return self.gm(last), metacentric_height(ship, aboard, last.pose)
+
+
+def compute(loaded: LoadedCase) -> Results:
+    """The run of a case. Raises LabError."""
+    built = build(loaded)
+    return Results(built, built.flooding.course(), loaded.case.ship.kind)
 
 
 def draughts(pose: Pose, built: Built) -> tuple[float, float]:

@@ -1,0 +1,1 @@
+"""The page, figures and film of a run of flooding."""
