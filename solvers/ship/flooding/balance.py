@@ -21,7 +21,7 @@ from solvers.ship.flooding.rooms import Filled, Rooms
 from solvers.ship.flooding.solids import Less, Prisms, Stations, Wet
 from solvers.ship.water import Water
 
-FIRST, LARGEST = 1e-4, np.radians(1.0)  # steps (rad) of the search for a heel
+FIRST, LARGEST = 1e-4, np.radians(2.0)  # steps (rad) of the search for a heel
 NUDGE = 1e-5  # rad: how far off a balanced heel its stability is asked for
 UPRIGHT = 1e-12  # of weight times size: what is off balance by no more counts as balanced
 MOST_STEPS, MOST_NEAR = 50, 12

@@ -65,6 +65,7 @@ class Flooding:
         self._depth = float(np.ptp(self.ship.hull.reach(0.0, 0.0)))
         self._collapsed: dict[str, float] = {}
         self._near, self._row = self.start, self.duration / ROWS
+        self._most = np.inf  # water (m³) with which the last search found no rest
 
     def course(self) -> Course:
         """The whole run."""
@@ -101,7 +102,7 @@ class Flooding:
                 moment, end = self._moment(row, now)
                 if end != "afloat":
                     return row, now, end
-                self._near = moment.pose
+                self._near, self._most = moment.pose, np.inf
                 found.append(moment)
                 if broken := self._broken():
                     self._collapsed |= dict.fromkeys(broken, row)
@@ -117,9 +118,7 @@ class Flooding:
     def rates(self, time: float, state: np.ndarray) -> np.ndarray:
         """Rates of all that is integrated."""
         volume, amount, motion = self._parts(state)
-        pose = self._pose(volume, motion)
-        if pose is None:
-            return np.zeros_like(state)
+        pose = self._pose_or_last(volume, motion)
         filled = self.ship.rooms.filled(volume, pose.slope, pose.roll)
         flows, pressure = self.flows(time, volume, amount, pose, filled)
         water, gas = np.zeros(len(volume) + 1), np.zeros(len(volume) + 1)  # the last one is the sea's
@@ -169,6 +168,15 @@ class Flooding:
             return pose_of(self.ship, motion[0], motion[2], self.start.slope)
         volume = np.clip(volume, 0.0, self.ship.rooms.full)
         return None if self.ship.sinks(volume) else self.ship.rest(volume, self._near)
+
+    def _pose_or_last(self, volume: np.ndarray, motion: np.ndarray) -> Pose:
+        """How she lies; a step that leads beyond where she is lost goes on as she lay, until its end is looked at."""
+        if volume.sum() >= self._most:
+            return self._near
+        pose = self._pose(volume, motion)
+        if pose is None:
+            self._most = volume.sum()
+        return pose or self._near
 
     def _moment(self, time: float, state: np.ndarray) -> tuple[Moment | None, str]:
         """What there is at a time (s), and what has become of her; no moment where she has no place."""
