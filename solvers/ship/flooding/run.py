@@ -19,7 +19,7 @@ from solvers.ship.flooding.rooms import Filled
 
 RELATIVE, ABSOLUTE = 1e-6, 1e-9  # errors of a step, of values and of rooms' volumes
 OF_AIR = 1e-6  # the same of the air in them
-ROWS = 300  # at least so many moments of a run are kept
+ROWS = 200  # at least so many moments of a run are kept
 FEWEST = 50  # steps of a run
 SLACK = 1e-9  # of the run: moments this near to each other are one
 
