@@ -10,7 +10,7 @@ import numpy as np
 
 from lab.naval.flooding.build import Built, build
 from lab.naval.flooding.case import LoadedCase
-from solvers.ship.flooding.balance import Pose
+from solvers.ship.flooding.balance import Plunges, Pose
 from solvers.ship.flooding.openings import SEA
 from solvers.ship.flooding.residual import displacement, levers, metacentric_height, without
 from solvers.ship.flooding.run import Course, Moment
@@ -22,15 +22,17 @@ DONE = 0.01  # of a room's volume: so near to the end it has come to rest
 SHARES = 0.0, 0.25, 0.5, 0.75, 1.0  # of the water aboard at the end: the intermediate stages
 LEVEL = 0.005  # of her depth: a room whose level is so near to the sea's is open to it
 HEELS = np.radians(np.arange(0.0, 91.0, 1.0))
+COARSE = np.radians(np.arange(0.0, 62.0, 2.0))  # of the stages
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """A stage of flooding: what it is, its moment, and GM (m) by added weight."""
+    """A stage of flooding: what it is, its moment, GM (m) and s_intermediate by added weight; None: not told."""
 
     what: str
     moment: Moment
     gm: float
+    factor: float | None
 
 
 @dataclass(eq=False)
@@ -123,7 +125,18 @@ class Results:
         if abs(self.largest[0]) > np.radians(0.1):
             places["largest heel"] = int(np.argmax(np.abs(self.heel)))
         found = sorted(places.items(), key=lambda one: one[1])
-        return [Stage(what, self.moments[k], self.gm(self.moments[k])) for what, k in found]
+        return [Stage(what, self.moments[k], *self._judged(self.moments[k])) for what, k in found]
+
+    def _judged(self, moment: Moment) -> tuple[float, float | None]:
+        """GM (m) and s_intermediate of a stage, its water kept as she heels; s where she lies at rest."""
+        if self.built.flooding.inertia is not None:
+            return self.gm(moment), None
+        side = self._side(moment)
+        try:
+            curve = Levers(COARSE, levers(self.built.ship, moment.volume, COARSE, moment.pose, side))
+        except Plunges:
+            return self.gm(moment), 0.0
+        return self.gm(moment), survival(curve, self.kind, False).factor
 
     def gm(self, moment: Moment) -> float:
         """GM (m) of M + ρ Σ v_i with all free surfaces."""
@@ -153,19 +166,22 @@ class Results:
     @property
     def side(self) -> int:
         """The side of her list at the end, 1 port and −1 starboard."""
-        roll = self.moments[-1].pose.roll
+        return self._side(self.moments[-1])
+
+    def _side(self, moment: Moment) -> int:
+        roll = moment.pose.roll
         return self.built.ship.side if abs(roll) < np.radians(0.01) else int(np.sign(roll))
 
     @cached_property
     def residual(self) -> Levers | None:
-        """Levers (m) of M by lost buoyancy over heels to the side of her list; None if she does not float."""
-        if self.course.end != "afloat":
+        """Levers (m) of M by lost buoyancy over heels to the side of her list; None unless she floats at rest."""
+        if self.rest_time is None:
             return None
         ship, aboard = self.lost_buoyancy
-        heels = HEELS
-        last = self.moments[-1].pose
-        # from where she lies to both ends, each near the one before
-        return Levers(heels, levers(ship, aboard, heels, last, self.side))
+        try:
+            return Levers(HEELS, levers(ship, aboard, HEELS, self.moments[-1].pose, self.side))
+        except Plunges:
+            return None
 
     @cached_property
     def flooding_heel(self) -> float | None:
@@ -189,7 +205,7 @@ class Results:
 
     @cached_property
     def survival(self) -> Survival | None:
-        """The factor s at the end; None if she does not float."""
+        """The factor s at the end; None unless she floats at rest."""
         return None if self.residual is None else survival(self.residual, self.kind, True, self.flooding_heel)
 
     @property

@@ -6,7 +6,7 @@ from lab.naval.flooding.results import Results, draughts
 from lab.naval.tables import Table
 from solvers.ship.naval.form import TONNE
 
-MASS, SMALL = "t", 1.0  # below so many tonnes masses are told in kg
+SMALL = 1.0  # below so many tonnes masses are told in kg
 ENDS = {
     "afloat": "afloat at the end of the run",
     "capsized": "capsizes",
@@ -32,15 +32,18 @@ def levels(results: Results) -> Table:
 
 def stages(results: Results) -> Table:
     """The stages of flooding."""
-    header = "stage", "time s", "water t", "draught aft m", "draught forward m", "heel deg", "freeboard m", "GM m"
+    heavy = results.mass.max() >= SMALL * TONNE
+    header = ("stage", "time s", f"water {'t' if heavy else 'kg'}", "draught aft m", "draught forward m")
+    header += ("heel deg", "freeboard m", "GM m", "s intermediate")
     rows = []
     for stage in results.stages:
         one = stage.moment
-        water = results.built.ship.water.density * float(one.volume.sum()) / TONNE
+        water = results.built.ship.water.density * float(one.volume.sum()) / (TONNE if heavy else 1.0)
         aft, fore = draughts(one.pose, results.built)
         freeboard = float(one.pose.heights(results.edges).min())
-        values = one.time, water, aft, fore, -np.degrees(one.pose.roll) + 0.0, freeboard, stage.gm
-        rows.append((stage.what, *(f"{value:.4g}" for value in values)))
+        values = one.time, water, aft, fore, -np.degrees(one.pose.roll), freeboard, stage.gm
+        told = "" if stage.factor is None else f"{stage.factor:.3f}"
+        rows.append((stage.what, *map(_digits, values), told))
     return header, rows
 
 
@@ -51,7 +54,7 @@ def rooms(results: Results) -> Table:
     for k, room in enumerate(ship.rooms.rooms):
         full = ship.rooms.full[k]
         values = full, last.volume[k], 100.0 * last.volume[k] / full, last.level[k], last.overpressure[k]
-        cells = [f"{value:.4g}" for value in values]
+        cells = [_digits(value) for value in values]
         rows.append((room.name, *cells, "yes" if results.open_rooms[k] else "no"))
     return header, rows
 
@@ -93,9 +96,16 @@ def _final(results: Results) -> list[tuple[str, str]]:
         ("lost buoyancy", f"{mass(lost)}, GM {two:.4g} m"),
     ]
     found = results.survival
+    if found is None:
+        return [*rows, ("levers left", "not told: she is not at rest; let the run be longer")]
     at = f"largest lever {found.lever:.3g} m, range {np.degrees(found.range):.3g} deg"
     told = "not told at this heel" if found.factor is None else f"{found.factor:.3f}"
     return [*rows, ("levers left", at), ("s at the end (SOLAS II-1/7-2)", f"{told}, {results.kind} ship")]
+
+
+def _digits(value: float) -> str:
+    """Four digits, and nothing where there is nothing but rounding."""
+    return f"{round(value, 6) + 0.0:.4g}"
 
 
 def side(heel: float) -> str:

@@ -57,7 +57,7 @@ def _freeboard(axes, time: np.ndarray, results: Results) -> None:
 def _levers(axes, results: Results) -> None:
     axes.set_title("levers left, by lost buoyancy (m)")
     if results.residual is None:
-        axes.text(0.5, 0.5, "she does not stay afloat", transform=axes.transAxes, ha="center")
+        axes.text(0.5, 0.5, "she does not float at rest", transform=axes.transAxes, ha="center")
         axes.set_axis_off()
         return
     side = "port" if results.side > 0 else "starboard"

@@ -68,7 +68,7 @@ def write(loaded: LoadedCase, results: Results, out: Path | None, film: bool) ->
 
 
 def numbers(results: Results) -> dict[str, object]:
-    """What happened, as JSON has it: seconds, degrees, kilograms, metres; None where it did not."""
+    """What happened, as JSON has it: seconds, degrees, kilograms, metres; None where it did not happen."""
     import numpy as np
 
     heel, when = results.largest
@@ -88,14 +88,12 @@ def numbers(results: Results) -> dict[str, object]:
         return found
     added, lost = results.displacements
     one, two = results.heights
+    found["added_weight"] = {"displacement": added, "gm": one}
+    found["lost_buoyancy"] = {"displacement": lost, "gm": two}
     left = results.survival
-    return found | {
-        "added_weight": {"displacement": added, "gm": one},
-        "lost_buoyancy": {"displacement": lost, "gm": two},
-        "largest_lever": left.lever,
-        "range": float(np.degrees(left.range)),
-        "s": left.factor,
-    }
+    if left is None:
+        return found
+    return found | {"largest_lever": left.lever, "range": float(np.degrees(left.range)), "s": left.factor}
 
 
 def _notes(loaded: LoadedCase) -> list[str]:
