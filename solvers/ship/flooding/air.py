@@ -1,4 +1,4 @@
-"""The air in rooms that are not vented: p = p_0 (M / V)^n.
+"""The air in rooms that are not vented, whose pressure is p = p_0 (M / V)^n in each.
 
 V is the room that the water leaves it, M what it fills at the pressure p_0 outside, n its index: 1.4 when it has no
 time to give off heat (adiabatic), 1 when it has (Boyle 1662). M changes by what flows through the dry parts of

@@ -6,8 +6,7 @@ counted exactly. Buoyancy is that of the whole hull, and
 M + ρ Σ v_i = ρ ∇,   Σ moments of M, ρ v_i and ρ ∇ = 0 about both level axes.
 
 The method of lost buoyancy gives the same position: there water in a room that is open to the sea is no weight, and the
-room no part of the hull. What differs is the displacement that levers and GM are told of; a righting moment is the
-same in both: `solvers.ship.flooding.residual`.
+room no part of the hull. What differs is told in `solvers.ship.flooding.residual`.
 
 From where she lies she turns with her moment to the nearest heel at which it vanishes and turns its sign: so a ship
 with a negative GM lolls, and stays on the side where she is.
@@ -67,7 +66,8 @@ class Floating:
     """A hull with a mass (kg) and its centre x, y, z (m) without water in her rooms, in calm water.
 
     `trims`: whether she trims freely; else she keeps the slope that she has. `side`: to which side she lolls from
-    upright, 1 to port, −1 to starboard. Beyond a heel of `capsize` (rad) she is lost.
+    upright, 1 to port, −1 to starboard. Beyond a heel of `capsize` (rad) she is lost. `_slopes` keeps how the last
+    balance changes with her pose, from which the search for the next one begins.
     """
 
     hull: Prisms | Stations | Less
@@ -78,9 +78,7 @@ class Floating:
     trims: bool = True
     side: int = -1
     capsize: float = 0.5 * np.pi
-    _slopes: dict = field(
-        default_factory=dict, compare=False, repr=False
-    )  # of the last balance, to begin the next with
+    _slopes: dict = field(default_factory=dict, compare=False, repr=False)
 
     def sinks(self, volume: np.ndarray) -> bool:
         """Whether she weighs more with the water (n,) m³ than her whole hull displaces."""
@@ -109,11 +107,7 @@ class Floating:
 
     def moment(self, volume: np.ndarray, pose: Pose, filled: Filled | None = None) -> float:
         """Moment (N m) of buoyancy and weights about the level fore-and-aft axis, positive to port."""
-        filled = filled or self.rooms.filled(volume, pose.slope, pose.roll)
-        wet = self.wet(pose)
-        density, g = self.water.density, self.water.gravity
-        own = pose.turned(self.centre)[1] * self.mass
-        return float(g * (density * (wet.moment[0, 1] - volume @ filled.centre[:, 1]) - own))
+        return float(self.water.density * self.water.gravity * self._off(volume, pose, filled)[2])
 
     def wet(self, pose: Pose) -> Wet:
         """What of the hull is under water."""
@@ -137,7 +131,13 @@ class Floating:
         return at
 
     def _nearby(self, volume: np.ndarray, near: Pose) -> Pose | None:
-        """The balance of a pose near one, by Broyden's method (1965); None if it finds none that is stable."""
+        """The balance near a pose by Broyden's method (1965); None if it finds none there that is stable."""
+        try:
+            return self._by_broyden(volume, near)
+        except np.linalg.LinAlgError:
+            return None
+
+    def _by_broyden(self, volume: np.ndarray, near: Pose) -> Pose | None:
         free = [0, 1, 2] if self.trims else [0, 2]
         scale = self._needed(volume) * np.array([1.0, self.hull.size, self.hull.size])[free]
         at = np.array([near.level, near.slope, near.roll])
@@ -174,9 +174,9 @@ class Floating:
         moved[axis] += NUDGE
         return (off(moved) - miss) / NUDGE
 
-    def _off(self, volume: np.ndarray, pose: Pose) -> np.ndarray:
+    def _off(self, volume: np.ndarray, pose: Pose, filled: Filled | None = None) -> np.ndarray:
         """What is off balance (3,): displaced volume (m³), and moments (m⁴) that pitch and roll her."""
-        filled, wet = self.rooms.filled(volume, pose.slope, pose.roll), self.wet(pose)
+        filled, wet = filled or self.rooms.filled(volume, pose.slope, pose.roll), self.wet(pose)
         density, gravity = self.water.density, pose.turned(self.centre)
         moment = wet.moment[0] - volume @ filled.centre - self.mass / density * gravity
         return np.array([wet.volume[0] - self._needed(volume), moment[0] + pose.slope * moment[2], moment[1]])
