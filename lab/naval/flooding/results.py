@@ -185,18 +185,17 @@ class Results:
 
     @cached_property
     def flooding_heel(self) -> float | None:
-        """The heel (rad) to her side at which an open way to a room that is not flooded goes under; None: none does."""
-        names = self.built.ship.rooms.names
-        dry = {name for name, out in zip(names, self.open_rooms, strict=True) if not out}
+        """The heel (rad) to her side at which an open way in goes under that is dry at the end; None: none does."""
+        last = self.moments[-1].pose
         points = [
             one.corners
             for one in self.built.flooding.openings
-            if SEA in one.between and dry & set(one.between) and one.opens is not None
+            if SEA in one.between and one.opens is not None and float(last.heights(one.corners).min()) > 0.0
         ]
         if not points:
             return None
         ship, aboard = self.lost_buoyancy
-        near = self.moments[-1].pose
+        near = last
         for heel in HEELS:
             near = ship.at_heel(aboard, self.side * heel, near)
             if float(near.heights(np.concatenate(points)).min()) <= 0.0:

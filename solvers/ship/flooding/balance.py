@@ -22,8 +22,10 @@ from solvers.ship.water import Water
 
 FIRST, LARGEST = 1e-4, np.radians(2.0)  # steps (rad) of the search for a heel
 NUDGE = 1e-5  # rad: how far off a balanced heel its stability is asked for
-UPRIGHT = 1e-12  # of weight times size: what is off balance by no more counts as balanced
+BALANCED = 1e-11  # of volume, and of volume times the hull's size: what is off by no more counts as balanced
 MOST_STEPS, MOST_NEAR = 50, 12
+STEEPEST = 0.5  # slope of the water along her: beyond she plunges
+LEVEL, SLOPE, ROLL = range(3)  # of a pose
 CLOSE = 1e-12  # of the volume: sinkage and trim are found as well as that
 
 
@@ -88,17 +90,18 @@ class Floating:
         """The pose at a roll (rad) at which she floats with water (n,) m³, `near` another one. Raises `Plunges`."""
         if not self.trims:
             return Pose(self._level(self._needed(volume), near.slope, roll, near.level), near.slope, roll)
-        return self._trimmed(volume, roll, near)
+        free = LEVEL, SLOPE
+        found = self._balanced(self._misses(volume, free), Pose(near.level, near.slope, roll), free)
+        return Pose(*found[0].tolist()) if found else self._trimmed(volume, roll, near)
 
     def rest(self, volume: np.ndarray, near: Pose) -> Pose | None:
         """The pose at which she comes to rest with water (n,) m³ from one; None: she turns over. Raises `Plunges`."""
         found = self._nearby(volume, near)
         if found is not None:
             return found
-        self._slopes.clear()
         search = _Heel(self, volume, near)
         start, roll = search.moment(near.roll), None
-        if abs(start) <= UPRIGHT * search.scale:
+        if abs(start) <= BALANCED * search.scale:
             if search.moment(near.roll + NUDGE) <= 0.0:
                 return search.poses[near.roll]
             start = float(self.side if near.roll == 0.0 else np.sign(near.roll))
@@ -107,7 +110,7 @@ class Floating:
 
     def moment(self, volume: np.ndarray, pose: Pose, filled: Filled | None = None) -> float:
         """Moment (N m) of buoyancy and weights about the level fore-and-aft axis, positive to port."""
-        return float(self.water.density * self.water.gravity * self._off(volume, pose, filled)[2])
+        return float(self.water.density * self.water.gravity * self._off(volume, pose, filled)[ROLL])
 
     def wet(self, pose: Pose) -> Wet:
         """What of the hull is under water."""
@@ -131,41 +134,51 @@ class Floating:
         return at
 
     def _nearby(self, volume: np.ndarray, near: Pose) -> Pose | None:
-        """The balance near a pose by Broyden's method (1965); None if it finds none there that is stable."""
+        """The balance near a pose; None if there is none that is stable, or it is not found."""
+        free = (LEVEL, SLOPE, ROLL) if self.trims else (LEVEL, ROLL)
+        off = self._misses(volume, free)
+        found = self._balanced(off, near, free)
+        if found is None:
+            return None
+        at, miss, table = found
+        table[:, -1] = self._slope(off, at, miss, ROLL)
         try:
-            return self._by_broyden(volume, near)
+            rolls = table[-1, -1] - table[-1, :-1] @ np.linalg.solve(table[:-1, :-1], table[:-1, -1])
         except np.linalg.LinAlgError:
             return None
+        return Pose(*at.tolist()) if rolls < 0.0 else None
 
-    def _by_broyden(self, volume: np.ndarray, near: Pose) -> Pose | None:
-        free = [0, 1, 2] if self.trims else [0, 2]
-        scale = self._needed(volume) * np.array([1.0, self.hull.size, self.hull.size])[free]
+    def _balanced(self, off, near: Pose, free: tuple[int, ...]):
+        """A pose near one where nothing is off balance, what is left of that, and its slopes; None if not found.
+
+        By Broyden's method (1965), which begins with the slopes of the last balance.
+        """
         at = np.array([near.level, near.slope, near.roll])
-
-        def off(place: np.ndarray) -> np.ndarray:
-            return self._off(volume, Pose(*place.tolist()))[free] / scale
-
-        miss = off(at)
-        table = self._slopes.get("table")
+        miss, table = off(at), self._slopes.get(free)
         if table is None:
             table = np.column_stack([self._slope(off, at, miss, k) for k in free])
         for _ in range(MOST_NEAR):
-            if np.abs(miss).max() <= UPRIGHT:
+            if np.abs(miss).max() <= BALANCED:
+                self._slopes[free] = table
+                return at, miss, table
+            try:
+                step = -np.linalg.solve(table, miss)
+            except np.linalg.LinAlgError:
                 break
-            step = -np.linalg.solve(table, miss)
             at = at.copy()
-            at[free] += step
-            if not (abs(at[2] - near.roll) <= LARGEST and abs(at[1]) < 1.0):
-                return None
+            at[list(free)] += step
+            if not (abs(at[ROLL] - near.roll) <= LARGEST and abs(at[SLOPE]) < STEEPEST):
+                break
             new = off(at)
             table = table + np.outer(new - miss - table @ step, step) / max(float(step @ step), 1e-300)
             miss = new
-        else:
-            return None
-        table[:, -1] = self._slope(off, at, miss, 2)
-        rolls = table[-1, -1] - table[-1, :-1] @ np.linalg.solve(table[:-1, :-1], table[:-1, -1])
-        self._slopes["table"] = table
-        return Pose(*at.tolist()) if rolls < 0.0 else None
+        self._slopes.pop(free, None)
+        return None
+
+    def _misses(self, volume: np.ndarray, free: tuple[int, ...]):
+        """What is off balance of a place (level, slope, roll), over the volume and its moment with the hull's size."""
+        scale = self._needed(volume) * np.array([1.0, self.hull.size, self.hull.size])[list(free)]
+        return lambda place: self._off(volume, Pose(*place.tolist()))[list(free)] / scale
 
     @staticmethod
     def _slope(off, at: np.ndarray, miss: np.ndarray, axis: int) -> np.ndarray:
@@ -182,33 +195,19 @@ class Floating:
         return np.array([wet.volume[0] - self._needed(volume), moment[0] + pose.slope * moment[2], moment[1]])
 
     def _trimmed(self, volume: np.ndarray, roll: float, near: Pose) -> Pose:
-        """The slope at which nothing pitches her, by the secant method, bracketed where that fails."""
-        from scipy.optimize import brentq
+        """The slope at which nothing pitches her, in a bracket. Raises `Plunges` where there is none."""
+        from scipy.optimize import brentq  # slow to import
 
-        needed, length = self._needed(volume), float(self.hull.forward[0] - self.hull.aft[0])
-        level = near.level
+        needed, level = self._needed(volume), near.level
 
         def surplus(slope: float) -> float:
             nonlocal level
             level = self._level(needed, slope, roll, level)
-            return float(self._off(volume, Pose(level, slope, roll))[1])
+            return float(self._off(volume, Pose(level, slope, roll))[SLOPE])
 
-        close = CLOSE * needed * length
-        one, two = near.slope, near.slope + 1e-6
-        off, other = surplus(one), 0.0
-        for _ in range(12):
-            if abs(off) <= close:
-                return Pose(level, one, roll)
-            other = surplus(two)
-            if other == off:
-                break
-            one, two, off = two, two - other * (two - one) / (other - off), other
-            if not abs(two) < 1.0:
-                break
-        steepest = 2.0
-        if surplus(-steepest) * surplus(steepest) > 0.0:
+        if surplus(-STEEPEST) * surplus(STEEPEST) > 0.0:
             raise Plunges
-        slope = brentq(surplus, -steepest, steepest, xtol=1e-13)
+        slope = brentq(surplus, -STEEPEST, STEEPEST, xtol=1e-13)
         return Pose(self._level(needed, slope, roll, level), slope, roll)
 
 
