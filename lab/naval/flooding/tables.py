@@ -8,10 +8,10 @@ from solvers.ship.naval.form import TONNE
 
 SMALL = 1.0  # below so many tonnes masses are told in kg
 ENDS = {
-    "afloat": "afloat at the end of the run",
-    "capsized": "capsizes",
-    "sunk": "sinks",
-    "plunged": "plunges: no trim carries the water in her ends",
+    "afloat": "afloat at the end of the run, {} s",
+    "capsized": "capsizes after {} s",
+    "sunk": "sinks after {} s",
+    "plunged": "plunges after {} s: no trim carries the water in her ends",
 }
 
 
@@ -74,7 +74,7 @@ def facts(results: Results) -> list[tuple[str, str]]:
     heel, when = results.largest
     rows = [
         ("without water", f"{mass(ship.mass)}, KG {ship.centre[2]:.4g} m"),
-        ("outcome", f"{ENDS[course.end]}, {results.time[-1]:.4g} s"),
+        ("outcome", ENDS[course.end].format(f"{results.time[-1]:.4g}")),
         ("water aboard", mass(results.mass[-1])),
         ("deck's edge under", _at(results.deck_time, "never")),
         ("largest heel", f"{side(heel)} at {when:.4g} s"),

@@ -73,7 +73,7 @@ def test_a_barge_with_a_holed_tank_lies_as_the_moment_of_its_water_says(tmp_path
 
 
 def test_page_tables_and_json(tmp_path):
-    loaded = load_case(written(tmp_path), {"run.duration": "20 s"})
+    loaded = load_case(written(tmp_path))
     results = compute(loaded)
     folder = page.write(loaded, results, tmp_path / "out", film=False)
     assert {path.name for path in folder.iterdir()} == {
