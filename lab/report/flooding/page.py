@@ -28,8 +28,8 @@ def describe(loaded: LoadedCase, results: Results) -> str:
     facts = tables.facts(results)
     width = max(len(name) for name, _ in facts)
     lines = [f"{loaded.case.title}  ({loaded.name})", *(f"  {name:<{width}}  {text}" for name, text in facts), ""]
-    for name in ON_PAGE:
-        lines += [*_aligned(tables.all_of(results)[name]), ""]
+    for table in (tables.stages(results), tables.rooms(results)):
+        lines += [*_aligned(table), ""]
     return "\n".join([*lines, *_notes(loaded)])
 
 

@@ -55,9 +55,8 @@ class Rooms:
         self.full = self.share * self.prisms.volume
         height = np.ptp(self.prisms.corners[..., 1], axis=1)
         self._pipe = PIPE * self.full / height
-        self._last = self.prisms.corners[..., 1].min(
-            axis=1, initial=np.inf
-        )  # levels found before, near which the next ones are sought
+        # the levels found last, near which the next ones are sought
+        self._last = self.prisms.corners[..., 1].min(axis=1, initial=np.inf)
 
     def __len__(self) -> int:
         return len(self.rooms)

@@ -63,12 +63,16 @@ class Flooding:
         place = {SEA: -1} | {name: k for k, name in enumerate(rooms.names)}
         self._ends = [(place[one.between[0]], place[one.between[1]]) for one in self.openings]
         self._depth = float(np.ptp(self.ship.hull.reach(0.0, 0.0)))
+        self._row = self.duration / ROWS
+        self._begin()
+
+    def _begin(self) -> None:
         self._collapsed: dict[str, float] = {}
-        self._near, self._row = self.start, self.duration / ROWS
-        self._most = np.inf  # water (m³) with which the last search found no rest
+        self._near, self._most = self.start, np.inf  # where she lay last; water (m³) with which she had no rest
 
     def course(self) -> Course:
         """The whole run."""
+        self._begin()
         rooms = self.ship.rooms
         volume = np.array([one.water for one in rooms.rooms])
         state = [volume, (rooms.full - volume)[self._closed]]
@@ -173,7 +177,10 @@ class Flooding:
         """How she lies; a step that leads beyond where she is lost goes on as she lay, until its end is looked at."""
         if volume.sum() >= self._most:
             return self._near
-        pose = self._pose(volume, motion)
+        try:
+            pose = self._pose(volume, motion)
+        except Plunges:
+            pose = None
         if pose is None:
             self._most = volume.sum()
         return pose or self._near
