@@ -10,6 +10,7 @@ from lab.naval.flooding.results import Results
 from lab.paint import decorations as deco
 from lab.paint.encoder import write_video
 from lab.paint.flooding.views import Profile, Section, View
+from lab.paint.page.layout import overlap
 from lab.paint.page.live_plot import LivePlot
 from lab.paint.page.texts import Texts
 from lab.paint.page.theme import LIGHT, blend
@@ -17,7 +18,7 @@ from lab.paint.scene.backdrop import shades
 
 SIZE = 1280, 720
 FINE = 2  # the views are drawn so many times larger and then reduced
-RATE, PICTURES, HELD = 24.0, 168, 24  # pictures a second, of the run, and of its end
+RATE, PICTURES, HELD = 20.0, 120, 20  # pictures a second, of the run, and of its end
 AROUND = 0.12  # room around the hull in a view, of its size
 PLATE = 0.009  # thickness of the hull's plates, of a view's width
 BOXES = {  # left, top, right, bottom in pixels
@@ -58,8 +59,9 @@ class LevelFilm:
         texts.write("clock", BOXES["clock"], self._reading(frame), 18, LIGHT.quiet)
         for name, view in self._views.items():
             texts.write(f"{name} name", BOXES[f"{name} name"], view.title, 15, LIGHT.ink)
+        placed: list[tuple] = []
         for view, mark, text in names:
-            _label(texts, BOXES[view], view, mark, text)
+            placed.append(_label(texts, BOXES[view], view, mark, text, placed))
         for name, plot in self._plots.items():
             image.paste(plot.picture([frame + 1]), BOXES[name][:2])
         return np.asarray(image)
@@ -122,7 +124,7 @@ class LevelFilm:
             return [(0.5 * wide + x, 0.5 * high - y) for x, y in moved]
 
         sea = float(np.clip(pixels([[0.0, 0.0]])[0][1], 0, high))
-        image = Image.fromarray(_backdrop(wide, high, sea))
+        image = _backdrop(wide, high, sea)
         draw = ImageDraw.Draw(image, "RGBA")
         plate = max(2, round(PLATE * wide))
         draw.polygon(pixels(view.hull), fill=(*LIGHT.hold, 255))
@@ -144,13 +146,11 @@ class LevelFilm:
         return image.reduce(FINE), marks if name == "section" else []
 
 
-def _backdrop(wide: int, high: int, sea: float) -> np.ndarray:
-    """Sky and sea (high, wide, 3)."""
-    picture = np.empty((high, wide, 3), np.uint8)
+def _backdrop(wide: int, high: int, sea: float) -> Image.Image:
+    """Sky and sea."""
     row = round(sea)
-    picture[:row] = shades(*LIGHT.sky, row)[:row]
-    picture[row:] = shades(*LIGHT.sea, high - row)[: high - row]
-    return picture
+    column = np.concatenate([shades(*LIGHT.sky, row)[:row], shades(*LIGHT.sea, high - row)[: high - row]])
+    return Image.fromarray(column).resize((wide, high), Image.Resampling.NEAREST)
 
 
 def _surface(water: np.ndarray) -> np.ndarray:
@@ -159,15 +159,18 @@ def _surface(water: np.ndarray) -> np.ndarray:
     return np.array([top[np.argmin(top[:, 0])], top[np.argmax(top[:, 0])]])
 
 
-def _label(texts: Texts, box: tuple, view: str, mark: tuple[float, float], text: str) -> None:
-    """Write an opening's name beside it, on the side where there is more room."""
+def _label(texts: Texts, box: tuple, view: str, mark: tuple[float, float], text: str, placed: list[tuple]) -> tuple:
+    """Write an opening's name beside it, to the right or where there is room, and below others; returns its box."""
     x, y = box[0] + mark[0], box[1] + mark[1]
     face = deco.font(13, True)
     wide = face.getlength(text) + 6
     left = x + 10 if x + 10 + wide < box[2] else x - 10 - wide
     place = (round(left), round(y - 9), round(left + wide), round(y + 9))
+    while any(overlap(place, other) for other in placed):
+        place = (place[0], place[1] + 20, place[2], place[3] + 20)
     texts.draw.rounded_rectangle(place, 4, fill=LIGHT.panel)
     texts.write(f"{view} {text}", (place[0] + 3, place[1], place[2], place[3]), text, 13, LIGHT.accent, bold=True)
+    return place
 
 
 def _time(value: float) -> str:
