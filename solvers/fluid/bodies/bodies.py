@@ -35,7 +35,7 @@ class Bodies:
     def __init__(self, arrays: State, pieces: Pieces, water: Water, scene, lanes: int):
         parts = pieces.parts
         self.pieces, self.count, self.lanes, self.worlds = pieces, len(parts), lanes, scene.worlds
-        self.tanks = [part.tank for part in parts]
+        self.exact, self.tanks = arrays.exact, [part.tank for part in parts]
         wet = [scene.fills[tank] > 0 for tank in self.tanks]  # others stand among grains
         self.solids, self.reach = Solids(parts, water, lanes, wet), water.reach
         self.rows = len(self.solids.places)
@@ -50,7 +50,6 @@ class Bodies:
 
     def _declare(self, own: State) -> None:
         """Make the arrays."""
-        self.exact = own.exact
         places, self.room = self.solids.places, roomy(self.rows, USUAL // self.lanes)
         room = self.room
         self.rest = [

@@ -160,13 +160,16 @@ def expected_speed(preset: Wet) -> float:
     """The highest speed (m/s) to be expected: of long waves, √(gH), of a column that collapses, 2 √(gH), of its
     own flow at first, of the tank.
 
-    H is the height of the water's surface over the tank's lowest point, that of the deepest tank.
+    H is the height of the water's surface over the tank's lowest point, that of the deepest tank. Water in a room of a
+    hull is as a column that may collapse.
     """
     height = max(pool.depth for pool in preset.pools)
     if preset.water.shape is not None:
         height = max(height, bounds(preset)[1] - min(z for _, z in preset.tank.corners))
     wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.shape is None else FRONT)
-    return max([wave, flow_speed(preset), tank_speed(preset), *(part.fastest() for part in preset.parts.values())])
+    parts = preset.parts.values()
+    rooms = (FRONT * sqrt(preset.run.gravity * room.depth) for part in parts for room in part.rooms.values())
+    return max([wave, flow_speed(preset), tank_speed(preset), *(part.fastest() for part in parts), *rooms])
 
 
 def centre_of_flow(preset: Wet) -> tuple[float, float]:
