@@ -34,7 +34,12 @@ SERIES = (
         "part_work", "J", label="work of each part on the water since the start, by its motion in the tank", per="part"
     ),
     Quantity("room_water", "kg", label="mass of the water in each room of a hull", per="room"),
-    Quantity("opening_flow", "kg/s", label="water that flows into a hull through each opening", per="opening"),
+    Quantity(
+        "opening_flow",
+        "kg/s",
+        label="water that flows into the room behind each opening of a hull, the later one of two rooms",
+        per="opening",
+    ),
     Quantity("level_depth", "m", label="depth of the water above the floor at each level gauge", per="level"),
 )
 # What the watch asks and no recording has: the number of a particle that has left the tank.

@@ -274,11 +274,15 @@ def circle(corners: np.ndarray, wall: float) -> list[float]:
 
 
 def line(opening: Opening, hull: Hull, fades: float) -> list[float]:
-    """The numbers of an opening, from where to where it leads round the room behind it: that is on its left."""
+    """The numbers of an opening. Its line runs so that the room behind it, the later one of two, is on the left."""
     start, end = np.array(opening.ends)
     length = float(np.hypot(*(end - start)))
     along = (end - start) / length
-    left = 0.5 * (start + end) + hull.wall * np.array([-along[1], along[0]])
-    if not any(Tank(np.array(room), 1.0).holds(left[None])[0] for room in hull.rooms):
+    middle, across = 0.5 * (start + end), hull.wall * np.array([-along[1], along[0]])
+    left, right = (
+        max((k for k, room in enumerate(hull.rooms) if Tank(np.array(room), 1.0).holds(side[None])[0]), default=-1)
+        for side in (middle + across, middle - across)
+    )
+    if left < right:
         start, along = end, -along
     return [opening.opens, *start.tolist(), *along.tolist(), length, 0.5 * hull.wall, 1.0 / fades]
