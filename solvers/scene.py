@@ -30,7 +30,8 @@ class Scene:
     - `outline` (m, 2) m of the tank, counter-clockwise; `open_edges`: its edges without a wall, by their first corners;
       `parts`: plates that move in the tank.
     - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
-      by default all; `more_tanks` stand beside it. Fixed grains belong to the first tank.
+      by default all; `more_tanks` stand beside it. Fixed grains belong to the first tank. It may be `aboard` a part,
+      by its number, that floats free (`Tank`).
     - `matters`: what the tanks hold, at most one of each kind of `solvers.matters`.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
@@ -55,6 +56,7 @@ class Scene:
     thickness: float | None = None
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
+    aboard: int | None = None
     precision: str = "f64"
     schedule: str = "auto"
 
@@ -96,7 +98,7 @@ class Scene:
         """All tanks of a world, the first one included."""
         suited = next((matter.thickness for matter in self.matters if matter.thickness), BARE_THICKNESS)
         thickness = self.thickness or suited
-        return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
+        return (Tank(self.outline, thickness, tuple(self.open_edges), self.length, self.aboard), *self.more_tanks)
 
     @property
     def flows(self) -> bool:
@@ -111,7 +113,12 @@ class Scene:
 
     @property
     def apart(self) -> list[int]:
-        """The tanks of water, by their numbers, beside others of grains, which do not feel their walls."""
+        """The tanks of water, by their numbers, beside others of grains, which do not feel their walls.
+
+        Grains aboard a body feel the walls of no tank that is not.
+        """
+        if self.aboard is not None:
+            return [number for number, tank in enumerate(self.tanks) if tank.aboard is None]
         return [number for number, fill in enumerate(self.fills) if fill] if self.grains else []
 
     @property

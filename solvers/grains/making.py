@@ -1,5 +1,7 @@
 """Makes the grains of a scene: state, laws, lists, contacts and mover that fit each other."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from solvers.grains.contacts import Contacts
@@ -22,7 +24,8 @@ RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contac
 
 
 def make_grains(scene, context: Context) -> GrainMatter:
-    """The grains of a scene (`solvers.scene.Scene`)."""
+    """The grains of a scene (`solvers.scene.Scene`); in tanks aboard a body, their carrier is that body."""
+    context = replace(context, carrier=context.parts.bodies.hold or context.carrier)
     given = scene.grains
     arrays, walls, count = context.arrays, context.walls, given.count
     units = context.units(count, len(given.fixed))

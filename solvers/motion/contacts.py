@@ -9,6 +9,7 @@ from solvers.machine.units import Units
 from solvers.motion.contact_pairs import OF_TANK, SHEAR, Shape, Touch, pairs_of, shapes_of
 from solvers.motion.contact_search import N_Y, N_Z, OTHER, OVERLAP, OWNER, P_Y, P_Z, ContactSearch
 from solvers.motion.free import INERTIA, MASS, NOT_FREE, FreeBodies
+from solvers.motion.on_body import OnBody, check_aboard
 from solvers.space.impact import dragged, over_the_step, pressed, stretched
 from solvers.tank.load import Load
 from solvers.tank.pieces import RATE, V_Y, V_Z, Pieces, Y, Z
@@ -224,8 +225,14 @@ def _booked(pairs: list[tuple[Shape, Shape, Touch]], first: int) -> list[list[in
 
 
 def make_bodies(arrays: State, pieces: Pieces, carrier, scene, dt: float) -> FreeBodies:
-    """The free bodies among the pieces of a scene (`solvers.scene.Scene`) with steps of dt (s), and their contacts."""
+    """The free bodies among the pieces of a scene (`solvers.scene.Scene`) with steps of dt (s), and their contacts.
+
+    Raises Unavailable.
+    """
+    check_aboard(scene)
     bodies = FreeBodies(arrays, pieces, carrier, len(scene.tanks))
     if bodies.count:
         bodies.join(Contacts(arrays, scene, bodies, dt))
+    if scene.aboard is not None:
+        bodies.take_aboard(OnBody(arrays, scene, bodies, carrier))
     return bodies

@@ -46,7 +46,8 @@ class FreeBodies:
     def __init__(self, arrays: State, pieces: Pieces, carrier, first: int):
         free = [k for k, part in enumerate(pieces.parts) if part.free]
         self.pieces, self.count, self.worlds, self.first = pieces, len(free), pieces.worlds, first
-        self.parts, self.loads, self.exact = free, (), arrays.exact
+        self.parts, self.loads, self.exact, self.hold = free, (), arrays.exact, None
+        self.carries = False  # whether there are tanks aboard
         self.phases, self.opening, self.own_loads = (Phase(self.follow),) if free else (), (), ()
         if not free:
             return
@@ -66,6 +67,10 @@ class FreeBodies:
     def join(self, contacts) -> None:
         """Take the `contacts` of the bodies, which are found as a step opens."""
         self.contacts, self.opening, self.own_loads = contacts, contacts.phases, (contacts.load,)
+
+    def take_aboard(self, hold) -> None:
+        """Carry tanks: the `hold` (`solvers.motion.on_body.OnBody`) of one of the bodies."""
+        self.hold, self.carries = hold, True
 
     def bear(self, loads: Sequence[Load]) -> None:
         """Respond to these loads from now on, those of all matters and of contacts."""
@@ -166,11 +171,20 @@ class FreeBodies:
         return ti.Vector([load[0], load[1], load[2] - (self.place[0][w, i] * load[1] - self.place[1][w, i] * load[0])])
 
     @ti.func
+    def borne(self, w, i, load: ti.template()):
+        """What a body bears of a load, on itself and on what is aboard: force, and moment about its centre of mass."""
+        found = self.about_centre(w, i, load.on_piece(w, self.first + self.part_of[i]))
+        if ti.static(self.carries):  # noqa: SIM102 (compiled only where there are tanks aboard)
+            if i == self.hold.body:
+                found += self.hold.load_from(w, load)
+        return found
+
+    @ti.func
     def load_on(self, w, i):
         """The load of all matters on a body: force, and moment about its centre of mass, in the tank's axes."""
         load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for m in ti.static(range(len(self.loads))):
-            load += self.about_centre(w, i, self.loads[m].on_piece(w, self.first + self.part_of[i]))
+            load += self.borne(w, i, self.loads[m])
         return load
 
     @ti.func
@@ -196,6 +210,9 @@ class FreeBodies:
         self.work[w, i] = self.work[w, i] + load.dot(mean) * during
         in_tank = mean - self.tank_speed(w, 3, self.place[0][w, i], self.place[1][w, i])
         self.contacts.book(w, i, in_tank, during)
+        if ti.static(self.carries):  # noqa: SIM102
+            if i == self.hold.body:
+                self.hold.note(w, self.place[2][w, i], mean[2], during * a, kick)
         u, arm, farthest = before + during * a, self.table[i, ARM], ti.cast(0.0, self.exact)
         y, z = self.place[0][w, i], self.place[1][w, i]
         u, a = self.drift(w, i, FIRST, u, a, 0.5 * step)

@@ -19,7 +19,7 @@ class Sampler:
     """One row of numbers per world: pose and velocity of the tank, and the mean force on it since the last sample.
 
     The force includes that on fixed grains and on `parts`, as they are when it is read, but for those that move freely:
-    what these bear moves them. Its moment is about the tank's origin. `loads` are the loads of all matters and of
+    what these bear, and what is aboard of them, moves them. Its moment is about the tank's origin. `loads` are the loads of all matters and of
     contacts, each on `pieces`; without any the force is zero. `quantities` are the numbers' declarations, and `at`
     has the column in which each begins.
     """
@@ -27,13 +27,16 @@ class Sampler:
     def __init__(self, arrays: State, worlds: int, pieces: int, carrier, parts: Pieces, loads: Sequence[Load]):
         self.worlds, self.carrier, self.parts, self.loads = worlds, carrier, parts, tuple(loads)
         self.exact, self.pieces = arrays.exact, pieces
-        self.quantities = tank.SERIES
+        self.quantities, self.hold = tank.SERIES, parts.bodies.hold
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
         own, world = arrays.under("sampler"), Axis("world", worlds)
         (self.rows,) = own.reals((world, Axis("quantity", columns)), "rows", kind=arrays.exact, kept=False)
-        parts = world, Axis("piece", self.pieces), Axis("component", 3)
-        (self.on_pieces,) = own.reals(parts, "on_pieces", kind=arrays.exact, kept=False)
+        if self.hold:
+            self.hold_part = parts.bodies.parts[self.hold.body]
+            self.aboard = own.holding("aboard", self.hold.of_pieces, "piece", ti.i32)
+        each = world, Axis("piece", self.pieces), Axis("component", 3)
+        (self.on_pieces,) = own.reals(each, "on_pieces", kind=arrays.exact, kept=False)
 
     def read_and_reset(self, time: float, since: float) -> dict[str, np.ndarray]:
         """The quantities at `time` (s), `since` (s) after the last sample: (W, *shape) of each by name."""
@@ -75,6 +78,9 @@ class Sampler:
         found = True
         if ti.static(self.parts.floats):
             part = piece - self.parts.bodies.first
+            if ti.static(self.parts.bodies.carries):  # noqa: SIM102
+                if self.aboard[piece] == 1:
+                    part = self.hold_part
             if 0 <= part < self.parts.count:
                 found = self.parts.bodies.loose(w, part) == NOT_FREE
         return found

@@ -14,12 +14,16 @@ class Tank:
     `outline` (m, 2) m in its carrier's axes is a simple polygon, counter-clockwise; `open_edges` are its edges without
     a wall, by their first corners. The world is a slab of `thickness` (m): forces are those on the slab. Along a ship
     the tank is `length` (m) long, None: as long as the ship. Its contents are the particles inside the outline.
+
+    One that is `aboard` a part, by its number, is a room of that body: its outline is in the axes in which the part is
+    drawn, and moves with it.
     """
 
     outline: np.ndarray
     thickness: float
     open_edges: tuple[int, ...] = ()
     length: float | None = None
+    aboard: int | None = None
 
     @property
     def along(self) -> float:

@@ -187,8 +187,7 @@ class FreeBodyCoupling:
         """Solve for the acceleration of a body from the sums of `sum_up`."""
         rest = ti.Vector([self.rest[w, i, k] for k in ti.static(range(3))])
         for m in ti.static(range(len(self.others))):
-            other = self.others[m].on_piece(w, self.free.first + self.free.part_of[i])
-            rest += self.free.about_centre(w, i, other)
+            rest += self.free.borne(w, i, self.others[m])
         mass, inertia = self.free.table[i, MASS], self.free.table[i, INERTIA]
         whole = ti.Matrix.zero(self.free.exact, 3, 3)
         for k in ti.static(range(3)):
