@@ -25,7 +25,7 @@ RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contac
 
 def make_grains(scene, context: Context) -> GrainMatter:
     """The grains of a scene (`solvers.scene.Scene`); in tanks aboard a body, their carrier is that body."""
-    context = replace(context, carrier=context.parts.bodies.hold or context.carrier)
+    context = replace(context, carrier=(hold := context.parts.bodies.hold) or context.carrier)
     given = scene.grains
     arrays, walls, count = context.arrays, context.walls, given.count
     units = context.units(count, len(given.fixed))
@@ -50,5 +50,5 @@ def make_grains(scene, context: Context) -> GrainMatter:
         rule = RULES[given.shapes.contact](arrays, units, walls, given.shapes, laws.wide)
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
-    mover = Mover(arrays, units, grains, integrator, context.carrier.rotating)
+    mover = Mover(arrays, units, grains, integrator, context.carrier.rotating, hold)
     return GrainMatter(scene, context, load, grains, neighbours, contacts, mover)

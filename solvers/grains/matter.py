@@ -18,7 +18,6 @@ from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_metre
-from solvers.motion.on_body import OnBody
 from solvers.ship.body import Body
 from solvers.space.axes import dot
 from solvers.tank.context import Context
@@ -54,7 +53,6 @@ class GrainMatter(Matter):
         given = scene.grains
         self.scene, self.units, self.load, self.grains, self.lists = scene, units, load, grains, lists
         self.contacts, self.mover, self.mass = contacts, mover, grains.mass
-        self.carrier, self.is_aboard = context.carrier, isinstance(context.carrier, OnBody)
         self.wide = lists.pairs.wide
         # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
         self.numbering = Numbering(arrays, grains, lists, 2.0 * given.mean_radius, given.shapes is None)
@@ -101,10 +99,7 @@ class GrainMatter(Matter):
     @ti.func
     def move(self, u, frame, kick, dt):
         """Move the grains of a unit; returns whether all of them are slow enough for the step."""
-        felt = frame  # that of the scene's carrier
-        if ti.static(self.is_aboard):
-            felt = self.carrier.frame(self.units.world(u), 0.0)
-        speed = self.mover.move(self.grains, u, felt, kick, dt)
+        speed = self.mover.move(self.grains, u, frame, kick, dt)
         if ti.static(not self.units.single):
             self.lists.validity.displacement[u] = self.lists.validity.displacement[u] + (speed + self.unseen) * dt
         return self.is_sound(u, speed, dt)

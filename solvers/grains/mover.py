@@ -10,10 +10,11 @@ from solvers.machine.units import Units
 
 @ti.data_oriented
 class Mover:
-    """Moves grains, in a tank that may be `rotating`."""
+    """Moves grains, in a tank that may be `rotating`, or aboard a free body that the `hold` is of."""
 
-    def __init__(self, arrays: State, units: Units, grains: GrainState, integrator, rotating: bool):
+    def __init__(self, arrays: State, units: Units, grains: GrainState, integrator, rotating: bool, hold=None):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
+        self.hold, self.is_aboard = hold, hold is not None
         names = (f"extra.{k}" for k in range(integrator.extra * (grains.axes + grains.turns)))
         self.extra = arrays.under("mover").reals(grains.each, *names)
 
@@ -46,6 +47,14 @@ class Mover:
                     spin_up[k] = spin_up[k] * g.present[w, i]
             acceleration = [force[a] * g.inverse_mass[w, i] + b[a] for a in ti.static(range(g.axes))]
             turn = [torque[k] * g.inverse_inertia[w, i] + spin_up[k] for k in ti.static(range(g.turns))]
+            if ti.static(self.is_aboard):
+                push = [force[a] * g.inverse_mass[w, i] for a in ti.static(range(g.axes))]
+                place = [g.place[a][w, i] for a in ti.static(range(g.axes))]
+                speed = [g.velocity[a][w, i] for a in ti.static(range(g.axes))]
+                gain = self.hold.gain(w, place, speed, push, kick, dt)
+                for a in ti.static(range(g.axes)):
+                    acceleration[a] = ti.cast(gain[a], g.real)
+                turn[0] = torque[0] * g.inverse_inertia[w, i] + ti.cast(gain[2], g.real)
             square = self.integrator.step(g, self.extra, w, i, acceleration, turn, kick, dt)
             if ti.static(g.shaped):
                 # No point of an outline is faster: (v + ω R)² is at most twice v² + ω² R².

@@ -212,7 +212,7 @@ class FreeBodies:
         self.contacts.book(w, i, in_tank, during)
         if ti.static(self.carries):  # noqa: SIM102
             if i == self.hold.body:
-                self.hold.note(w, self.place[2][w, i], mean[2], during * a, kick)
+                self.hold.note(w, before, before + during * a, kick, step)
         u, arm, farthest = before + during * a, self.table[i, ARM], ti.cast(0.0, self.exact)
         y, z = self.place[0][w, i], self.place[1][w, i]
         u, a = self.drift(w, i, FIRST, u, a, 0.5 * step)

@@ -9,41 +9,93 @@ from solvers.motion.frame import turned
 from solvers.motion.free import CENTRE_Y, CENTRE_Z, HELD, FreeBodies
 
 
+LAG, BEFORE_Y, BEFORE_Z, BEFORE, AFTER_Y, AFTER_Z, AFTER, KEPT, TURNED, COSINE, SINE, PULL_Y, PULL_Z = range(13)
+NUMBERS = 13
+
+
 @ti.data_oriented
 class OnBody:
-    """The carrier of what is in tanks aboard a free body, with the interface of `Prescribed`.
+    """The carrier of what is in tanks aboard a free body: they stand in the body's axes as drawn, in which grains move.
 
-    Its frame is the body's axes as drawn, with the drawn origin: a point that is drawn at p is at O + R(θ) p in the
-    tank in which the body is, which stands still. While the body is held, the frame is at rest.
+    A point that is drawn at r is at O + R(θ) r in the tank in which the body is, which stands still. Over the earth
+    grains have the velocity u = V + v + ω × r in the body's axes, V that of O, which only contacts and gravity change:
+    with v half a step behind r, as the body's V and ω are,
 
-    The body takes the load of the instant, before the cargo moves, so that neither lags behind the other. What the
-    cargo feels in a step are turn and rate as it begins, and the acceleration by which the body reaches its velocities
-    in the cargo's `kick`, as on an axle (`OnAxle`): what one gains the other loses.
+        D (V + v + ω × r)_(n−½) + Δt R(−θ_(n+½)) (R(θ_n) F/m + g) = (V + v + ω × r)_(n+½),  r_(n±½) = r_n ± ½ Δt v_(n±½),
+
+    with D the turn of the axes in the step, is solved for the new v (own derivation: leapfrog over the earth, told in
+    the body's axes). The body takes the load of the instant, before its cargo moves. So the momentum of both is kept to
+    rounding, and moment of momentum and energy to second order. While the body is held, its tanks are at rest.
 
     `pieces` bear the load of the cargo: the walls of these tanks, the parts in them, and fixed grains. Their loads are
-    in the frame's axes, about its origin.
+    in the body's axes, about the drawn origin. `noted` (W, numbers) is what grains need of the body in a step: how long
+    (s) before its beginning its velocities are of that time; V and ω before and after the step's kick; D; R(θ_n −
+    θ_(n+½)); R(−θ_(n+½)) g.
     """
 
-    rotating = moving = responds = True
-    has_multiples = False  # leapfrog needs steps of one length
+    moving = rotating = True
 
     def __init__(self, arrays: State, scene, bodies: FreeBodies, carrier):
         self.bodies, self.gravity, self.exact, self.real = bodies, carrier.gravity, arrays.exact, arrays.real
         aboard = scene.tanks[0].aboard
-        self.body, holds = bodies.parts.index(aboard), [k for k, tank in enumerate(scene.tanks) if tank.aboard == aboard]
+        holds = [k for k, tank in enumerate(scene.tanks) if tank.aboard == aboard]
         inner = [bodies.first + k for k, part in enumerate(scene.parts) if part.tank in holds]
+        self.body = bodies.parts.index(aboard)
         self.pieces = (*holds, *inner, *range(bodies.first + len(scene.parts), scene.pieces))
         self.of_pieces = np.isin(np.arange(scene.pieces), self.pieces)
-        own, world = arrays.under("hold"), Axis("world", scene.worlds)
-        names = "turn", "rate", "gain_y", "gain_z", "gain_turn"
-        self.felt = own.reals((world,), *names, kind=own.exact, kept=False)
+        own, each = arrays.under("hold"), (Axis("world", scene.worlds), Axis("number", NUMBERS))
+        (self.noted,) = own.reals(each, "noted", kind=own.exact, kept=False)
 
     @ti.func
-    def note(self, w, turn, rate, gain: ti.template(), kick):
-        """Note what the cargo feels of a step: turn and rate as it begins, and the `gain` in velocities in a `kick`."""
-        self.felt[0][w], self.felt[1][w] = turn, rate
-        for k in ti.static(range(3)):
-            self.felt[2 + k][w] = gain[k] / kick
+    def note(self, w, before: ti.template(), after: ti.template(), kick, dt):
+        """Note the velocities of the body before and after the kick (s) of a step of dt (s), as it begins."""
+        half, turn = 0.5 * dt, self.bodies.place[2][w, self.body]
+        lag = kick - half
+        self.noted[w, LAG] = lag
+        self.note_velocity(w, BEFORE_Y, turn - lag * before[2], before)
+        later = turn + half * after[2]
+        self.note_velocity(w, AFTER_Y, later, after)
+        through, rest = turned(1.0, 0.0, turn - lag * before[2] - later), turned(1.0, 0.0, turn - later)
+        self.noted[w, KEPT], self.noted[w, TURNED] = through[0], through[1]
+        self.noted[w, COSINE], self.noted[w, SINE] = rest[0], rest[1]
+        pull = turned(0.0, -self.gravity[0], -later)
+        self.noted[w, PULL_Y], self.noted[w, PULL_Z] = pull[0], pull[1]
+
+    @ti.func
+    def note_velocity(self, w, first: ti.template(), turn, u: ti.template()):
+        """Note the velocity of the drawn origin at a turn, in the body's axes, and the rate."""
+        v = turned(u[0], u[1], -turn)
+        y, z = self.bodies.table[self.body, CENTRE_Y], self.bodies.table[self.body, CENTRE_Z]
+        self.noted[w, first], self.noted[w, first + 1] = v[0] + u[2] * z, v[1] - u[2] * y
+        self.noted[w, first + 2] = u[2]
+
+    @ti.func
+    def gain(self, w, place: ti.template(), speed: ti.template(), push: ti.template(), kick, dt):
+        """How a grain is accelerated in the body's axes (m/s²), and its spin by these axes (1/s²).
+
+        It is at a `place` (m) as the step of dt (s) begins and had a `speed` (m/s) before; contacts accelerate it by
+        `push` (m/s²). All are lists.
+        """
+        n = ti.static(self.noted)
+        during, zero = ti.cast(kick, self.exact), ti.cast(0.0, self.exact)
+        y, z = ti.cast(place[0], self.exact), ti.cast(place[1], self.exact)
+        v_y, v_z = ti.cast(speed[0], self.exact), ti.cast(speed[1], self.exact)
+        a_y, a_z = ti.cast(push[0], self.exact), ti.cast(push[1], self.exact)
+        found = ti.Vector([a_y, a_z - self.gravity[0], zero])
+        if self.bodies.state[w, self.body] != HELD:
+            before, rate, lag = n[w, BEFORE], n[w, AFTER], n[w, LAG]
+            u_y = n[w, BEFORE_Y] + v_y - before * (z - lag * v_z)
+            u_z = n[w, BEFORE_Z] + v_z + before * (y - lag * v_y)
+            g_y = n[w, COSINE] * a_y - n[w, SINE] * a_z + n[w, PULL_Y]
+            g_z = n[w, SINE] * a_y + n[w, COSINE] * a_z + n[w, PULL_Z]
+            w_y = n[w, KEPT] * u_y - n[w, TURNED] * u_z + during * g_y - n[w, AFTER_Y] + rate * z
+            w_z = n[w, TURNED] * u_y + n[w, KEPT] * u_z + during * g_z - n[w, AFTER_Z] - rate * y
+            swing = 0.5 * ti.cast(dt, self.exact) * rate  # of v + swing × v = w
+            less = 1.0 / (1.0 + swing * swing)
+            found[0] = (less * (w_y + swing * w_z) - v_y) / during
+            found[1] = (less * (w_z - swing * w_y) - v_z) / during
+            found[2] = (before - rate) / during
+        return found
 
     @ti.func
     def load_from(self, w, load: ti.template()):
@@ -64,19 +116,6 @@ class OnBody:
     def last(self, w):
         """The body's last known accelerations."""
         return ti.Vector([self.bodies.acceleration[k][w, self.body] for k in ti.static(range(3))])
-
-    @ti.func
-    def frame(self, w, t):
-        """The frame for the cargo: (b_y, b_z, ω, ω'), with the body force per mass b = R(−θ)(g − Ö)."""
-        zero = ti.cast(0.0, self.exact)
-        b, rate, rise = ti.Vector([zero, -self.gravity[0]]), zero, zero
-        if self.bodies.state[w, self.body] != HELD:
-            turn, gain_y, gain_z = self.felt[0][w], self.felt[2][w], self.felt[3][w]
-            rate, rise = self.felt[1][w], self.felt[4][w]
-            arm, square = self.origin(turn), rate * rate
-            up_y, up_z = gain_y - rise * arm[1] - square * arm[0], gain_z + rise * arm[0] - square * arm[1]
-            b = turned(-up_y, -self.gravity[0] - up_z, -turn)
-        return ti.Vector([ti.cast(value, self.real) for value in ti.static([b[0], b[1], rate, rise])])
 
     @ti.func
     def kinematics(self, w, time):
@@ -102,15 +141,25 @@ def check_aboard(scene) -> None:
     outside = [tank for tank in others if tank.aboard is None]
     inside = [k for k, tank in enumerate(scene.tanks) if tank.aboard is not None]
     if aboard != {first.aboard} or not scene.grains:
-        raise Unavailable("tanks aboard a body hold grains, all are aboard the same one, and the first tank is one of them")
+        raise Unavailable(
+            "tanks aboard a body hold grains, all are aboard the same one, and the first tank is one of them"
+        )
     if part is None or not part.free:
-        raise Unavailable(f"the tank is aboard part {first.aboard}, which does not float free: give it a mass and inertia")
+        raise Unavailable(
+            f"the tank is aboard part {first.aboard}, which does not float free: give it a mass and inertia"
+        )
     if scene.vessels or scene.axles or any(scene.motions):
-        raise Unavailable("a tank aboard a free body needs all other tanks at rest: take out their motions, ship or axle")
-    if any(scene.fills[k] for k in inside) or part.tank in inside or any(
-        other.free and other.tank in inside for other in scene.parts
+        raise Unavailable(
+            "a tank aboard a free body needs all other tanks at rest: take out their motions, ship or axle"
+        )
+    if (
+        any(scene.fills[k] for k in inside)
+        or part.tank in inside
+        or any(other.free and other.tank in inside for other in scene.parts)
     ):
         raise Unavailable("a tank aboard a free body holds grains alone: put water and free bodies into another tank")
+    if scene.grains.integrator != "verlet":
+        raise Unavailable('grains aboard a free body move by run.integrator = "verlet" alone')
     if any(scene.tanks[k].open_edges for k in inside):
         raise Unavailable("a tank aboard a free body must be closed: take out its open edges")
     if any(tank.thickness != first.thickness for tank in (*others, *outside)):
