@@ -8,7 +8,6 @@ from solvers.machine.state import Axis, State
 from solvers.motion.frame import turned
 from solvers.motion.free import CENTRE_Y, CENTRE_Z, HELD, FreeBodies
 
-
 LAG, BEFORE_Y, BEFORE_Z, BEFORE, AFTER_Y, AFTER_Z, AFTER, KEPT, TURNED, COSINE, SINE, PULL_Y, PULL_Z = range(13)
 NUMBERS = 13
 
@@ -21,11 +20,12 @@ class OnBody:
     grains have the velocity u = V + v + ω × r in the body's axes, V that of O, which only contacts and gravity change:
     with v half a step behind r, as the body's V and ω are,
 
-        D (V + v + ω × r)_(n−½) + Δt R(−θ_(n+½)) (R(θ_n) F/m + g) = (V + v + ω × r)_(n+½),  r_(n±½) = r_n ± ½ Δt v_(n±½),
+        D (V + v + ω × r)_(n−½) + Δt R(−θ_(n+½)) (R(θ_n) F/m + g) = (V + v + ω × r)_(n+½),
 
-    with D the turn of the axes in the step, is solved for the new v (own derivation: leapfrog over the earth, told in
-    the body's axes). The body takes the load of the instant, before its cargo moves. So the momentum of both is kept to
-    rounding, and moment of momentum and energy to second order. While the body is held, its tanks are at rest.
+    with r_(n±½) = r_n ± ½ Δt v_(n±½) and D, the turn of the axes in the step, is solved for the new v (own derivation:
+    leapfrog over the earth, told in the body's axes). The body takes the load of the instant, before its cargo moves.
+    So the momentum of both is kept to rounding, and moment of momentum and energy to second order. While the body is
+    held, its tanks are at rest.
 
     `pieces` bear the load of the cargo: the walls of these tanks, the parts in them, and fixed grains. Their loads are
     in the body's axes, about the drawn origin. `noted` (W, numbers) is what grains need of the body in a step: how long

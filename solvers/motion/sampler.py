@@ -19,8 +19,9 @@ class Sampler:
     """One row of numbers per world: pose and velocity of the tank, and the mean force on it since the last sample.
 
     The force includes that on fixed grains and on `parts`, as they are when it is read, but for those that move freely:
-    what these bear, and what is aboard of them, moves them. Its moment is about the tank's origin. `loads` are the loads of all matters and of
-    contacts, each on `pieces`; without any the force is zero. `quantities` are the numbers' declarations, and `at`
+    what these bear, and what is aboard of them, moves them. Its moment is about the tank's origin. `loads` are the
+    loads of all matters and of contacts, each on `pieces`, of what is aboard of a body in its axes; without any the
+    force is zero. `quantities` are the numbers' declarations, and `at`
     has the column in which each begins.
     """
 
