@@ -25,8 +25,7 @@ RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contac
 
 def make_grains(scene, context: Context) -> GrainMatter:
     """The grains of a scene (`solvers.scene.Scene`); in tanks aboard a body, their carrier is that body."""
-    context = replace(context, carrier=(hold := context.parts.bodies.hold) or context.carrier)
-    given = scene.grains
+    given, hold = scene.grains, context.parts.bodies.hold
     arrays, walls, count = context.arrays, context.walls, given.count
     units = context.units(count, len(given.fixed))
     load = context.load(arrays.under("grains"), units)
@@ -51,4 +50,5 @@ def make_grains(scene, context: Context) -> GrainMatter:
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
     mover = Mover(arrays, units, grains, integrator, context.carrier.rotating, hold)
+    context = replace(context, carrier=hold or context.carrier)
     return GrainMatter(scene, context, load, grains, neighbours, contacts, mover)

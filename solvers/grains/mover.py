@@ -48,10 +48,7 @@ class Mover:
             acceleration = [force[a] * g.inverse_mass[w, i] + b[a] for a in ti.static(range(g.axes))]
             turn = [torque[k] * g.inverse_inertia[w, i] + spin_up[k] for k in ti.static(range(g.turns))]
             if ti.static(self.is_aboard):
-                push = [force[a] * g.inverse_mass[w, i] for a in ti.static(range(g.axes))]
-                place = [g.place[a][w, i] for a in ti.static(range(g.axes))]
-                speed = [g.velocity[a][w, i] for a in ti.static(range(g.axes))]
-                gain = self.hold.gain(w, place, speed, push, kick, dt)
+                gain = self.gain(g, w, i, force, kick, dt)
                 for a in ti.static(range(g.axes)):
                     acceleration[a] = ti.cast(gain[a], g.real)
                 turn[0] = torque[0] * g.inverse_inertia[w, i] + ti.cast(gain[2], g.real)
@@ -87,6 +84,14 @@ class Mover:
             b[1] += -rise * y + rate * (rate * z - 2.0 * g.now[0][w, i])
             spin_up[0] = -rise
         return b, spin_up
+
+    @ti.func
+    def gain(self, g: ti.template(), w, i, force: ti.template(), kick, dt):
+        """How grain i, which contacts push with a `force` (N), and its spin gain in the axes of the body (`OnBody`)."""
+        push = [force[a] * g.inverse_mass[w, i] for a in ti.static(range(g.axes))]
+        place = [g.place[a][w, i] for a in ti.static(range(g.axes))]
+        speed = [g.velocity[a][w, i] for a in ti.static(range(g.axes))]
+        return self.hold.gain(w, place, speed, push, kick, dt)
 
     @ti.func
     def turn(self, g: ti.template(), u):

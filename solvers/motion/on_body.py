@@ -33,10 +33,10 @@ class OnBody:
     θ_(n+½)); R(−θ_(n+½)) g.
     """
 
-    moving = rotating = True
+    moving = True
 
     def __init__(self, arrays: State, scene, bodies: FreeBodies, carrier):
-        self.bodies, self.gravity, self.exact, self.real = bodies, carrier.gravity, arrays.exact, arrays.real
+        self.bodies, self.gravity, self.exact = bodies, carrier.gravity, arrays.exact
         aboard = scene.tanks[0].aboard
         holds = [k for k, tank in enumerate(scene.tanks) if tank.aboard == aboard]
         inner = [bodies.first + k for k, part in enumerate(scene.parts) if part.tank in holds]
@@ -138,7 +138,6 @@ def check_aboard(scene) -> None:
     if not aboard:
         return
     part = scene.parts[first.aboard] if first.aboard in range(len(scene.parts)) else None
-    outside = [tank for tank in others if tank.aboard is None]
     inside = [k for k, tank in enumerate(scene.tanks) if tank.aboard is not None]
     if aboard != {first.aboard} or not scene.grains:
         raise Unavailable(
@@ -162,5 +161,5 @@ def check_aboard(scene) -> None:
         raise Unavailable('grains aboard a free body move by run.integrator = "verlet" alone')
     if any(scene.tanks[k].open_edges for k in inside):
         raise Unavailable("a tank aboard a free body must be closed: take out its open edges")
-    if any(tank.thickness != first.thickness for tank in (*others, *outside)):
+    if any(tank.thickness != first.thickness for tank in others):
         raise Unavailable("a tank aboard a free body must be as thick as the tank in which the body is")

@@ -21,21 +21,21 @@ class Sampler:
     The force includes that on fixed grains and on `parts`, as they are when it is read, but for those that move freely:
     what these bear, and what is aboard of them, moves them. Its moment is about the tank's origin. `loads` are the
     loads of all matters and of contacts, each on `pieces`, of what is aboard of a body in its axes; without any the
-    force is zero. `quantities` are the numbers' declarations, and `at`
-    has the column in which each begins.
+    force is zero. `quantities` are the numbers' declarations, and `at` has the column in which each begins.
     """
 
     def __init__(self, arrays: State, worlds: int, pieces: int, carrier, parts: Pieces, loads: Sequence[Load]):
         self.worlds, self.carrier, self.parts, self.loads = worlds, carrier, parts, tuple(loads)
         self.exact, self.pieces = arrays.exact, pieces
-        self.quantities, self.hold = tank.SERIES, parts.bodies.hold
+        self.quantities = tank.SERIES
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
         own, world = arrays.under("sampler"), Axis("world", worlds)
         (self.rows,) = own.reals((world, Axis("quantity", columns)), "rows", kind=arrays.exact, kept=False)
-        if self.hold:
-            self.hold_part = parts.bodies.parts[self.hold.body]
-            self.aboard = own.holding("aboard", self.hold.of_pieces, "piece", ti.i32)
+        if parts.bodies.carries:
+            hold = parts.bodies.hold
+            self.carrying = parts.bodies.parts[hold.body]
+            self.aboard = own.holding("aboard", hold.of_pieces, "piece", ti.i32)  # of the part with that number
         each = world, Axis("piece", self.pieces), Axis("component", 3)
         (self.on_pieces,) = own.reals(each, "on_pieces", kind=arrays.exact, kept=False)
 
@@ -81,7 +81,7 @@ class Sampler:
             part = piece - self.parts.bodies.first
             if ti.static(self.parts.bodies.carries):  # noqa: SIM102
                 if self.aboard[piece] == 1:
-                    part = self.hold_part
+                    part = self.carrying
             if 0 <= part < self.parts.count:
                 found = self.parts.bodies.loose(w, part) == NOT_FREE
         return found
