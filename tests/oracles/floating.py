@@ -12,6 +12,7 @@ from solvers.tank.parts import Body, Free, Hull, Opening
 from tests.oracles.water import GRAVITY, box, lattice
 
 DENSITY = 1000.0
+NEVER = 1e9  # s
 
 
 def afloat(
@@ -27,15 +28,25 @@ def afloat(
 ) -> Scene:
     """A box of a `size` (m) and of `ratio` times the water's density, as deep in still water as it floats upright.
 
-    Or with its middle at a `place` (m), and heeled (rad). Changes are of the scene or of its water.
+    Or with its middle at a `place` (m), and heeled (rad). It is hollow, with an opening that stays covered, so that it
+    has the kernels of `hull`. Changes are of the scene or of its water.
     """
     width, height = size
     middle = place or (0.0, depth + (0.5 - ratio) * height)
-    half = [(y * 0.5 * width, z * 0.5 * height) for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    corners = [(middle[0] + cos(heel) * y - sin(heel) * z, middle[1] + sin(heel) * y + cos(heel) * z) for y, z in half]
+
+    def drawn(*points: tuple[float, float]) -> tuple[tuple[float, float], ...]:
+        return tuple(
+            (middle[0] + cos(heel) * y - sin(heel) * z, middle[1] + sin(heel) * y + cos(heel) * z) for y, z in points
+        )
+
+    half, wall = (0.5 * width, 0.5 * height), 0.25 * min(size)
+    outer, room = (rectangle((-y, -z), (y, z)) for y, z in (half, (half[0] - wall, half[1] - wall)))
+    floor = 0.5 * wall - half[1]
+    covered = Opening(drawn((-0.05, floor), (0.05, floor)), NEVER)
     mass = DENSITY * ratio * width * height
     free = Free(mass, mass * (width**2 + height**2) / 12.0, middle, release)
-    body = Body(tuple(corners), closed=True, free=free)
+    hollow = Hull(wall, (drawn(*room),), (covered,))
+    body = Body(drawn(*outer), closed=True, free=free, hull=hollow)
     sound = 10.0 * sqrt(GRAVITY * depth)
     drops = lattice(tank[0], depth, spacing, sound)
     drops = drops[:, clear_of(drops["position"][0], (body,), spacing)]
@@ -74,10 +85,9 @@ def hull(
     spacing: float = 0.05,
     depth: float = 1.0,
     keel: float = 0.4,
-    free: Free | None = None,
     **changes,
 ) -> Scene:
-    """A hull, 1 m wide and high, its keel so high (m) over the floor of a tank 2 m wide with water of a `depth` (m).
+    """A hull, 1 m wide and high, held with its keel so high (m) over the floor of a tank 2 m wide, `depth` (m) deep.
 
     Its walls are `wall` spacings thick; within is water up to `inside` (m) over its floor, in which a `hole` (m) wide
     opens after a while (s).
@@ -86,7 +96,8 @@ def hull(
     outer, room = rectangle((-0.5, keel), (0.5, keel + 1.0)), rectangle((thick - 0.5, keel + thick), (0.5 - thick, 1.3))
     middle = keel + 0.5 * thick
     openings = (Opening(((-0.5 * hole, middle), (0.5 * hole, middle)), opens),) if hole else ()
-    body = Body(outer, closed=True, free=free, hull=Hull(thick, (room,), openings))
+    held = Free(600.0, 120.0, (0.0, keel + 0.4), NEVER)
+    body = Body(outer, closed=True, free=held, hull=Hull(thick, (room,), openings))
     drops = lattice(2.0, depth, spacing, sound)
     drops = drops[:, clear_of(drops["position"][0], (body,), spacing)]
     if inside:

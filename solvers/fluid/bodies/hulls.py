@@ -51,6 +51,7 @@ class Hulls:
         circles = [circle(corners, parts[k].hull.wall) for k, corners in rooms]
         self.circles = own.holding("rooms", np.array(circles), "room number")
         self.rows = roomy(len(solids.places), spared)
+        self.used = own.holding("used", np.array([len(solids.places)]), "one", ti.i32)
         self.hole = own.holding("hole", padded(solids.holes, self.rows), "row lane", ti.i32)
         self.beyond = own.holding("beyond", padded(solids.beyond.astype(float), self.rows), "row lane")
         if holes:
@@ -89,7 +90,7 @@ class Hulls:
             if self.open[w, n] == 0:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
                 if t >= self.lines[n, OPENS]:
                     self.open[w, n] = 1
-                    for row in range(ti.static(len(self.solids.places))):
+                    for row in range(self.used[0]):
                         b = w * p.stride + p.fluid_blocks + self.first[0] + row
                         for lane in range(p.lanes):
                             if self.hole[row, lane] == n + 1:

@@ -17,6 +17,7 @@ THROWN = np.array([[(0.1, 1.0), (0.9, -0.3), (0.6, 0.5), (-0.8, 0.6)]])  # m/s
 STEPS, SPIN = 4000, 3.0  # rad/s
 
 
+@pytest.mark.slow  # it compiles two simulations
 def test_in_a_body_that_is_held_grains_do_as_in_a_tank_at_rest():
     held = Simulation(dry(release=9.0), PLACES, 1)
     held.advance(STEPS)

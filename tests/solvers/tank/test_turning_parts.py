@@ -50,7 +50,7 @@ def states(moves: bool, **how) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     "how",
     [
-        {},
+        pytest.param({}, marks=pytest.mark.slow),
         pytest.param({"schedule": "per-band"}, marks=pytest.mark.slow),
         pytest.param({"schedule": "per-grain"}, marks=pytest.mark.slow),
         pytest.param({"shapes": "continuous"}, marks=pytest.mark.slow),
