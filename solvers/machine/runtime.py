@@ -135,7 +135,10 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
     wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
     if _live:
         gc.collect()  # a simulation that nobody uses any more refers to itself in circles
-    if _running == wanted and not options and (_live or not _used):
+    refused = ti.lang.impl.get_runtime().unfinalized_fields_builder  # of simulations that ended as they were made
+    anew = bool(refused) and not _live
+    refused.clear()
+    if _running == wanted and not options and not anew and (_live or not _used):
         return
     for state in _live:
         memory.close(state.fields)

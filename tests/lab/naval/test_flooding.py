@@ -54,6 +54,7 @@ def refused(tmp_path, old: str, new: str) -> str:
     return text
 
 
+@pytest.mark.slow
 def test_a_barge_with_a_holed_tank_lies_as_the_moment_of_its_water_says(tmp_path):
     """tan φ (GM + ½ BM tan² φ) of what is left of her: the box less 10 m × 2 m to starboard."""
     results = cargolab.flood(written(tmp_path))
@@ -72,6 +73,7 @@ def test_a_barge_with_a_holed_tank_lies_as_the_moment_of_its_water_says(tmp_path
     assert results.survival.factor == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_page_tables_and_json(tmp_path):
     loaded = load_case(written(tmp_path))
     results = compute(loaded)
@@ -149,6 +151,7 @@ def test_rooms_that_overlap_are_refused(tmp_path):
     assert text == "rooms.hold: shares 10 m3 with rooms.tank; make one of them smaller."
 
 
+@pytest.mark.slow
 def test_a_hull_of_offsets_floods_as_the_box_that_it_is(tmp_path):
     lines = ["station,z,half_breadth"] + [f"{x},{z},5" for x in range(0, 41, 5) for z in (0, 5)]
     (tmp_path / "box.csv").write_text("\n".join(lines))

@@ -103,6 +103,7 @@ def test_only_a_whole_video_of_this_recording_with_these_wishes_counts_as_made(t
     assert not counts(colour="layer")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="kills a process")
 def test_a_killed_painter_fails_one_recording_and_another_takes_its_place(sweep, monkeypatch, tmp_path):
     begun = []

@@ -75,6 +75,7 @@ def goes_on(path, whole, folder, monkeypatch, pauses: int) -> None:
             assert one.frames[name][:].tobytes() == other.frames[name][:].tobytes(), name
 
 
+@pytest.mark.slow
 def test_both_phases_are_recorded_apart(cup):
     with open_recording(cup.parent / "run") as recording:
         series, frames = recording.series, recording.frames
@@ -87,6 +88,7 @@ def test_both_phases_are_recorded_apart(cup):
         assert "Pa" in recording.quantities["air_mean_pressure"].unit
 
 
+@pytest.mark.slow
 def test_the_summary_says_how_soft_the_air_is(cup):
     text = (cup.parent / "run" / "summary.md").read_text()
     assert "60 particles of air" in text and "times softer than real air" in text
@@ -94,6 +96,7 @@ def test_the_summary_says_how_soft_the_air_is(cup):
     assert "60 of these particles, 1.2 kg/m^3" in page and "times softer than real air" in page
 
 
+@pytest.mark.slow
 def test_pictures_show_the_air_where_water_is_not(cup):
     """By its pressure in colours, while water looks like water; where water alone is asked for, air is left out."""
     initialise()

@@ -70,6 +70,7 @@ def test_a_run_with_a_body_goes_on_bit_for_bit(dropped):
         np.testing.assert_array_equal(values, again[name], err_msg=name)
 
 
+@pytest.mark.slow
 def test_a_body_far_lighter_than_what_it_displaces_is_let_go_under_water(dropped):
     """It begins with a = (ρ − ρ_b) S g/(ρ_b S + A), A from 0.5 to 2 times what it displaces, and comes up.
 

@@ -7,6 +7,7 @@ import pytest
 
 from solvers.machine.errors import Unavailable
 from solvers.motion.harmonic import Sway
+from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
@@ -61,6 +62,7 @@ def loads(run: Simulation) -> np.ndarray:
     )
 
 
+@pytest.mark.slow
 def test_grains_in_a_body_that_falls_have_no_weight(run):
     anew(run, thrown=0.0, spin=0.0)
     run.advance(STEPS - 1)
@@ -69,6 +71,7 @@ def test_grains_in_a_body_that_falls_have_no_weight(run):
     assert body == pytest.approx([0.02, 1.06 - 0.5 * GRAVITY * run.time**2, 0.0], abs=1e-12)
 
 
+@pytest.mark.slow
 def test_body_and_grains_keep_their_momentum_and_fall_as_one(run):
     """Momentum to 1e-12 of Σ|F|Δt, by whatever bears the grains' load; the centre falls by g t²/2, to second order."""
     before, began, pushed, each = anew(run), run.time, 0.0, np.zeros(5)
@@ -87,6 +90,7 @@ def test_body_and_grains_keep_their_momentum_and_fall_as_one(run):
     assert after["centre"] - before["centre"] == pytest.approx(way, abs=off)
 
 
+@pytest.mark.slow
 def test_moment_of_momentum_is_kept_to_second_order(run):
     """About the common centre of mass, without weight."""
     off = []
@@ -99,6 +103,7 @@ def test_moment_of_momentum_is_kept_to_second_order(run):
     assert off[1] < off[0] / 3.0 or off[0] < 1e-12
 
 
+@pytest.mark.slow
 def test_energy_of_body_and_grains_is_kept_without_losses(run):
     """A Hertzian collision is as an oscillation of half a period t_c, whose energy is told to (π Δt/t_c)²/12."""
     before, dt = anew(run, gravity=0.0, material={"friction": 0.0, "restitution": 1.0}), 2e-5
@@ -113,6 +118,7 @@ def test_energy_of_body_and_grains_is_kept_without_losses(run):
     assert apart > 20
 
 
+@pytest.mark.slow
 def test_a_run_with_grains_aboard_goes_on_bit_for_bit(run):
     anew(run)
     run.advance(1500)
@@ -141,3 +147,12 @@ def test_a_run_with_grains_aboard_goes_on_bit_for_bit(run):
 def test_what_cannot_be_aboard_is_refused(changes, says):
     with pytest.raises(Unavailable, match=says):
         Simulation(dry(**changes), PLACES, 1)
+
+
+def test_a_scene_that_is_refused_as_it_is_made_leaves_the_next_one_alone():
+    with pytest.raises(Unavailable):
+        Simulation(dry(aboard=7), PLACES, 1)
+    empty = Simulation(Scene(box(1.0, 1.0), motions=[[Sway(0.1, 1.0)]], step=1e-3), threads=1)
+    empty.advance(10)
+    assert empty.time == pytest.approx(0.01)
+    empty.close()

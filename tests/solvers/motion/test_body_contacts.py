@@ -133,6 +133,7 @@ def tumbling(dt: float) -> float:
     return np.sqrt(np.mean((found["body_energy"][0] / start - 1.0) ** 2))
 
 
+@pytest.mark.slow
 def test_a_bounce_without_losses_keeps_the_energy_to_second_order(monkeypatch):
     # An oscillation of ω is too fast by (ω Δt)²/24, a thousandth at 20 steps for half of it. Of that order is what a
     # collision that begins inside a step gains or loses. With as stiff springs and a quarter of the step it is a
@@ -173,6 +174,7 @@ def test_a_box_sticks_on_a_slope_below_the_angle_of_friction_and_slides_above_as
     assert loads.sum(axis=0) == pytest.approx(0.0, abs=1e-12 * np.abs(loads).sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("aside", [0.0, 0.04])
 def test_a_stack_of_two_boxes_stands(aside):
     # In line the corners of one lie on those of the other, and must not be pushed aside.
@@ -246,6 +248,7 @@ def test_a_run_goes_on_bit_for_bit_from_within_a_contact():
     assert {name for name in whole if not np.array_equal(whole[name], again[name])} == set()
 
 
+@pytest.mark.slow
 def test_corners_of_the_tank_bear_a_body_and_an_edge_without_a_wall_does_not():
     # A board lies across a ridge; another one falls through an opening in the floor.
     outline = np.array(
@@ -274,6 +277,7 @@ def test_a_box_in_a_groove_is_borne_by_both_its_sides():
     assert np.abs(speed).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_a_smooth_body_slides_in_a_round_tank_like_a_pendulum():
     # Without friction or losses; neither the disc's corners nor those between the tank's edges may catch.
     radius, ball, angle = 1.0, 0.2, 0.3
@@ -299,6 +303,7 @@ def test_a_smooth_body_slides_in_a_round_tank_like_a_pendulum():
     assert kept == pytest.approx(energy, abs=2e-3 * (energy - least))  # twice (ω Δt)²/24, as of a bounce
 
 
+@pytest.mark.slow
 def test_an_axle_feels_a_free_body_by_its_contacts_alone():
     # The tank is so heavy that it hardly turns: its moment is that of the body's weight.
     part = free(block(0.4, 0.2, (1.0, 0.1)))
@@ -316,6 +321,7 @@ def test_an_axle_feels_a_free_body_by_its_contacts_alone():
     assert inertia == pytest.approx(moment, rel=0.01)
 
 
+@pytest.mark.slow
 def test_bodies_pass_plates_and_what_is_held_pushes_nothing():
     plate = Part(((-1.0, 0.5), (1.0, 0.5)))
     lower, upper = free(block(0.4, 0.2, (0.0, 0.09)), release=9.0), free(block(0.2, 0.2, (0.0, 1.0)))

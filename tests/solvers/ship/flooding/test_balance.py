@@ -122,6 +122,7 @@ def test_water_with_a_free_surface_lolls_her_to_the_side_that_is_asked(side):
     assert side * np.tan(pose.roll) == pytest.approx(np.sqrt(-2.0 * height / spread), rel=TOLERANCE)
 
 
+@pytest.mark.slow
 def test_she_plunges_where_no_trim_carries_the_water_in_her_bow():
     """A bow of half her length that floods weighs more than the other half can trim to carry."""
     room = Room("bow", box(-10.0, 10.0, 0.0, 10.0), 50.0, 99.0)
@@ -130,6 +131,7 @@ def test_she_plunges_where_no_trim_carries_the_water_in_her_bow():
     assert course.end == "plunged" and course.moments[-1].pose.slope > 0.02
 
 
+@pytest.mark.slow
 def test_she_capsizes_where_no_heel_balances_the_water():
     ship = barge([wing(6.0)], height=7.5, draught=5.0, trims=False)
     hole = Opening("hole", ("sea", "wing"), circle((50.0, 10.0, 2.0), 2.0, "side"))

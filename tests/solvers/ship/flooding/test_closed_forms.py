@@ -64,6 +64,7 @@ def test_an_air_pocket_stops_the_water_where_its_pressure_does(index):
     )
 
 
+@pytest.mark.slow
 def test_air_leaves_by_a_vent_and_the_room_fills_as_if_it_were_open():
     """A vent as large as the hole lets air of 1/850 of the water's density go for 5 mm of head, of 4 m."""
     hole = Opening("hole", ("sea", "tank"), circle((50.0, 0.0, 0.0), 1.0, "deck"))
@@ -77,6 +78,7 @@ def test_air_leaves_by_a_vent_and_the_room_fills_as_if_it_were_open():
     assert ends[1][-1] == pytest.approx(ends[0][-1], rel=TOLERANCE)
 
 
+@pytest.mark.slow
 def test_a_cover_opens_at_its_time_and_a_door_gives_way_at_its_head():
     one = Room("side", box(4.0, 10.0, 0.0, 9.0), 40.0, 60.0)
     two = Room("hold", box(-4.0, 4.0, 0.0, 9.0), 40.0, 60.0)
