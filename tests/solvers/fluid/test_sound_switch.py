@@ -19,6 +19,8 @@ SOUND, STIFF, STRIDE, BACKGROUND = 12.5, 100.0, 8, 30.0
 FROM = 0.05  # s
 KEPT = "water_position", "water_velocity", "air_position", "air_velocity"
 
+pytestmark = pytest.mark.slow  # two compilations of water with air
+
 
 def scene() -> Scene:
     """A tank at rest, half full, whose air gets eight times the water's speed of sound."""
