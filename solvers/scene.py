@@ -30,8 +30,8 @@ class Scene:
     - `outline` (m, 2) m of the tank, counter-clockwise; `open_edges`: its edges without a wall, by their first corners;
       `parts`: plates that move in the tank.
     - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
-      by default all; `more_tanks` stand beside it. Fixed grains belong to the first tank. It may be `aboard` a part,
-      by its number, that floats free (`Tank`).
+      by default all; `more_tanks` stand beside it, or are rooms of a part that floats free (`Tank`). Grains are in the
+      first tank, or in such rooms if there are any.
     - `matters`: what the tanks hold, at most one of each kind of `solvers.matters`.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
@@ -56,7 +56,6 @@ class Scene:
     thickness: float | None = None
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
-    aboard: int | None = None
     precision: str = "f64"
     schedule: str = "auto"
 
@@ -98,7 +97,7 @@ class Scene:
         """All tanks of a world, the first one included."""
         suited = next((matter.thickness for matter in self.matters if matter.thickness), BARE_THICKNESS)
         thickness = self.thickness or suited
-        return (Tank(self.outline, thickness, tuple(self.open_edges), self.length, self.aboard), *self.more_tanks)
+        return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
 
     @property
     def flows(self) -> bool:
@@ -112,12 +111,28 @@ class Scene:
         return tuple(map(sum, zip(*each, strict=True))) if each else (0,) * len(self.tanks)
 
     @property
+    def hold(self) -> int:
+        """The tank that grains fill, by its number: the first, or the first of those aboard a body."""
+        return next((number for number, tank in enumerate(self.tanks) if tank.aboard is not None), 0)
+
+    def poured(self, outline: np.ndarray) -> Self:
+        """The scene with its grains in a closed tank of another outline (m, 2) m that stands still.
+
+        Those in a room of a body are alone there, with what stands in the room.
+        """
+        poured = replace(self, outline=outline, open_edges=(), motions=())
+        if self.hold:
+            inner = tuple(replace(part, tank=0) for part in self.parts if part.tank == self.hold)
+            poured = replace(poured, matters=(self.grains,), parts=inner, more_tanks=())
+        return poured
+
+    @property
     def apart(self) -> list[int]:
         """The tanks of water, by their numbers, beside others of grains, which do not feel their walls.
 
         Grains aboard a body feel the walls of no tank that is not.
         """
-        if self.aboard is not None:
+        if self.hold:
             return [number for number, tank in enumerate(self.tanks) if tank.aboard is None]
         return [number for number, fill in enumerate(self.fills) if fill] if self.grains else []
 
@@ -162,8 +177,13 @@ class Scene:
         return float(max(np.linalg.norm(tank.outline, axis=1).max() for tank in self.tanks))
 
     def credible_speed(self) -> float:
-        """Highest closing speed (m/s) to be expected: of a fall through the tank, or the tank's or a part's own."""
+        """Highest closing speed (m/s) to be expected: of a fall through the tank, or the tank's or a part's own.
+
+        In a room of a body that may roll over it is that of a fall along its larger side.
+        """
         height = np.ptp(np.concatenate([tank.outline for tank in self.tanks])[:, 1])
+        if self.hold:
+            height = np.ptp(self.tanks[self.hold].outline, axis=0).max()
         starts = (matter.start_speed for matter in self.matters)
         return max(*starts, float(np.sqrt(2.0 * self.gravity * height)), self.driven_speed(), 0.0)
 

@@ -7,6 +7,7 @@ import numpy as np
 from lab.assembly.drawn import classes, draw_shapes
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
+from lab.preset.sections.water.floating import check_draught
 from lab.preset.units import show
 from solvers.grains.bed.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.grains.bed.sizes import Sizes
@@ -16,6 +17,7 @@ from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import closing_speed
 from solvers.scene import Scene
 from solvers.tank.outline import lining, raised
+from solvers.tank.tank import Tank
 
 THROUGH = 1.0  # radii: at this overlap grains pass through each other and the walls
 
@@ -29,12 +31,12 @@ def grain_count(preset: Preset) -> int:
         return len(grains.listed)
     if grains.count is not None:
         return grains.count
-    return count_for_depth(grains.depth, np.array(preset.tank.corners), preset.sizes, fixed_grains(preset))
+    return count_for_depth(grains.depth, np.array(preset.hold.corners), preset.sizes, fixed_grains(preset))
 
 
 def fixed_grains(preset: Preset) -> np.ndarray:
     """The fixed grains (k, 3) y, z, radius in m that line a rough tank, the same in all repeats (seed run.seed)."""
-    tank = preset.tank
+    tank = preset.hold
     if tank.roughness is None:
         return NONE_FIXED
     return lining(np.array(tank.corners), tank.roughness, np.random.default_rng(preset.run.seed))
@@ -46,14 +48,14 @@ def filling_outline(preset: Preset) -> np.ndarray:
     Grains start higher than they come to rest. If they are thrown, fill an open tank to its rim, or have no room to
     start in a closed one, the walls are extended upwards until the bed has settled.
     """
-    outline, grains = np.array(preset.tank.corners), preset.grains
+    outline, grains = np.array(preset.hold.corners), preset.grains
     if grains.listed or grains.region or not preset.run.settles:
         return outline
     count, largest = grain_count(preset), _farthest(preset)
-    low = not (grains.surface == "disturbed" or preset.tank.open_edges)
+    low = not (grains.surface == "disturbed" or preset.hold.open_edges)
     if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset))) >= count:
         return outline
-    return raised(outline, headroom(count, largest, preset.tank.extent[0]))
+    return raised(outline, headroom(count, largest, preset.hold.extent[0]))
 
 
 def _farthest(preset: Preset) -> float:
@@ -139,7 +141,7 @@ def _sized(preset: Preset, shapes: Shapes, random: list[np.random.Generator]) ->
 
 def _plates(preset: Preset) -> list[np.ndarray]:
     """The parts in the grains' tank as polylines (m, 2) in m, in their rest position; a body's ends where it begins."""
-    return [np.array(part.line) for part in preset.parts.values() if part.tank is None]
+    return [np.array(part.line) for part in preset.parts.values() if part.tank == preset.grains.room]
 
 
 def _kinds(preset: Preset, shape: tuple[int, int]) -> dict:
@@ -187,3 +189,31 @@ def check_softness(scene: Scene) -> None:
                 f"contact.stiffness_scale: grains {what} at {show(speed, 'm/s')} here and would overlap by "
                 f"{100 * deep:.3g} % of a radius, where {100 * most:g} % is the most; {remedy}."
             )
+
+
+def rooms_of_bodies(preset: Preset) -> tuple[Tank, ...]:
+    """The room of a hull that the grains are in, as a tank aboard it; none if they are in a tank of their own."""
+    if preset.grains is None or preset.grains.room is None:
+        return ()
+    hull = list(preset.parts).index(carrier_of_grains(preset))
+    return (Tank(np.array(preset.hold.corners), preset.thickness, aboard=hull),)
+
+
+def carrier_of_grains(preset: Preset) -> str:
+    """The name of the hull whose room the grains are in."""
+    return preset.grains.room.rpartition(".")[0]
+
+
+def check_laden(preset: Preset, scene: Scene) -> None:
+    """Raise LabError for a hull that its own weight and that of the grains in it sink, or carry too high."""
+    if scene.hold:
+        name = carrier_of_grains(preset)
+        part = preset.parts[name]
+        key = f"parts.{name}.{'density' if part.mass is None else 'mass'}"
+        check_draught(preset, part, key, cargo_of(scene))
+
+
+def cargo_of(scene: Scene) -> float:
+    """Mass (kg) of a scene's grains, that of the heaviest world."""
+    given = scene.grains
+    return float((4.0 / 3.0 * np.pi * given.radius**3 * given.density).sum(axis=1).max())

@@ -7,7 +7,7 @@ from math import ceil
 import numpy as np
 
 from lab.assembly.collisions import known_collisions
-from lab.assembly.grains import check_softness, grain_count, grains_of
+from lab.assembly.grains import check_laden, check_softness, grain_count, grains_of, rooms_of_bodies
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
 from lab.assembly.water import fluid_of, most_drops, particles, water_aboard
@@ -57,10 +57,11 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         axles=[preset.axle.solved] * worlds if preset.axle else (),
         thickness=preset.thickness,
         length=preset.tank.length,
-        more_tanks=further_tanks(preset, preset.thickness),
+        more_tanks=(*further_tanks(preset, preset.thickness), *rooms_of_bodies(preset)),
         precision=preset.run.precision,
         schedule=preset.run.schedule,
     )
+    check_laden(preset, scene)
     if preset.grains:
         check_softness(scene)
     scene.step = _step(preset, scene)

@@ -34,6 +34,12 @@ class Recorded(Protocol):
     shapes: Drawn | None
 
 
+def parts_met(preset: Preset) -> list[str]:
+    """The names of the parts that grains may touch: all, or those in the room of a hull that the grains are in."""
+    room = preset.grains.room
+    return [name for name, part in preset.parts.items() if room is None or part.tank == room]
+
+
 def touching(preset: Preset, recorded: Recorded) -> Scene:
     """The recorded grains of all repeats of a preset with walls and parts, in a tank at rest and without water."""
     given, _ = grains_of(preset)
@@ -42,12 +48,13 @@ def touching(preset: Preset, recorded: Recorded) -> Scene:
         angle, contact = np.zeros(drawn.which.shape), preset.contact
         shapes = Shapes(tuple(drawn.contours), drawn.which, angle, contact.outlines, contact.nodes)
     own = {"velocity": None, "spin": None, "kind": np.asarray(recorded.kind, dtype=int) if preset.kinds else None}
+    met = [part for part, name in zip(parts_of(preset), preset.parts, strict=True) if name in parts_met(preset)]
     scene = Scene(
-        np.array(recorded.outline),
+        np.array(preset.hold.corners if preset.grains.room else recorded.outline),
         (replace(given, **own, radius=recorded.radius, fixed=recorded.fixed, shapes=shapes),),
         gravity=preset.run.gravity,
         open_edges=tuple(recorded.open_edges),
-        parts=parts_of(preset),
+        parts=tuple(replace(part, tank=0, free=None) for part in met),
         thickness=preset.thickness,
         length=preset.tank.length,
     )

@@ -29,8 +29,8 @@ START = 0.01  # of the movable grains
 
 
 def applies(recording: Recording) -> bool:
-    """The tank is open."""
-    return len(recording.open_edges) > 0
+    """The tank of the grains is open."""
+    return len(recording.preset.hold.open_edges) > 0
 
 
 def measure(recording: Recording) -> dict[str, Value]:

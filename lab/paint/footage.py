@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.cargo.looks import Stowage
 from lab.paint.painter import Edges
-from lab.paint.scene.bodies import bodies_of
+from lab.paint.scene.bodies import bodies_of, hold_of
 from lab.paint.scene.drive import drive_text
 from lab.paint.sea import Rail, Sea
 from lab.paint.water.basins import basins_of
@@ -35,7 +35,7 @@ class Footage:
     spilled (T, W) grains, both None without grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the
     outlines of irregular grains, None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges:
     those without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2):
-    their displacements, m;
+    their displacements, m; hold: the room of a floating hull that the grains are in, None if they are in the tank;
     matters: the keys of what the tank holds; water: its particles' volume and gauges, None without water;
     sea: the ship and her waves if the tank is a ship's hold, rail: that of a tank on an axle, else None;
     ends: the loss of each ship, None if not lost; cargo: which one each grain is; drive: what moves the tank, in words;
@@ -61,7 +61,7 @@ class Footage:
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
-        self.bodies = bodies_of(recording.preset)
+        self.bodies, self.hold = bodies_of(recording.preset), hold_of(recording.preset)
         self.sea, self.rail = Sea(recording.preset) if recording.preset.ship else None, None
         if recording.preset.axle:
             self.rail = Rail(recording.preset.axle, np.ptp(self.outline[:, 0]), self.series_time, series["axle_slide"])
@@ -196,19 +196,34 @@ class Bed:
 
     def position(self, frame: int) -> np.ndarray:
         """Grain positions (n, 2) in the tank frame, m; NaN for a grain that has left the scene."""
-        return self.footage.grains("position", frame, self.world)
+        return self.aboard(self.footage.grains("position", frame, self.world), frame)
+
+    def aboard(self, points: np.ndarray, frame: float) -> np.ndarray:
+        """Points (n, 2) m in the axes of the grains, which may be those of a hull, where they are in the tank frame."""
+        hold = self.footage.hold
+        return points if hold is None else self._carried(points, hold.hull, frame)
+
+    def heel(self, frame: float) -> float:
+        """How far (rad) the axes of the grains have turned in the tank frame."""
+        hold = self.footage.hold
+        return 0.0 if hold is None else float(self._between(self.footage.part_turn, frame)[hold.hull])
 
     def speed(self, frame: int) -> np.ndarray:
-        """Grain speeds (n,) relative to the tank, m/s."""
+        """Grain speeds (n,) relative to the tank, or to the hull in which they are, m/s."""
         return np.hypot(*self.footage.grains("velocity", frame, self.world).T)
 
     def angle(self, frame: int) -> np.ndarray:
         """Grain angles (n,) in the tank frame, rad."""
-        return self.footage.grains("angle", frame, self.world)
+        return self.footage.grains("angle", frame, self.world) + self.heel(frame)
 
     def pressing(self, frame: float) -> Pressing:
         """The contacts with their forces in the frame next to this place in the film."""
-        return self.footage.pressing(round(float(frame)), self.world)
+        row = round(float(frame))
+        found = self.footage.pressing(row, self.world)
+        if self.footage.hold is None:
+            return found
+        force = moved_line(found.force, np.zeros(2), self.heel(row))
+        return replace(found, place=self.aboard(found.place, row), force=force)
 
     def spin(self, frame: int) -> np.ndarray:
         """Grain spins (n,) relative to the tank, rad/s."""
@@ -234,6 +249,11 @@ class Bed:
 
     def moved(self, points: np.ndarray, number: int, frame: float) -> np.ndarray:
         """Points (m, 2) m of a part, as drawn, where they are in the tank frame in a frame."""
+        moved, hold = self._carried(points, number, frame), self.footage.hold
+        return self.aboard(moved, frame) if hold is not None and number in hold.parts else moved
+
+    def _carried(self, points: np.ndarray, number: int, frame: float) -> np.ndarray:
+        """Points (m, 2) m in the axes of a part where they are, in those of what carries the part."""
         shift, turn = (self._between(values, frame)[number] for values in (self.footage.part, self.footage.part_turn))
         return moved_line(points, shift, turn)
 

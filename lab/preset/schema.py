@@ -8,6 +8,7 @@ it to files and reads it back. What follows from the keys is a property; of what
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from operator import attrgetter
 from typing import Annotated
 
 import numpy as np
@@ -39,6 +40,7 @@ from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.air_checks import check_air
 from lab.preset.sections.water.bodies import WithBodies
 from lab.preset.sections.water.checks import check_water
+from lab.preset.sections.water.floating import check_hold
 from lab.preset.sections.water.flow_checks import check_weight
 from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import DampingZone, Gauge, Water
@@ -206,10 +208,11 @@ def check(preset: Preset) -> None:
     """Raise LabError, one sentence, for keys that contradict each other, and for what cannot be built."""
     check_tank(preset.tank)
     _check_matters(preset)
+    check_parts(preset)
+    check_hold(preset)
     if preset.grains is not None:
         _check_of_grains(preset)
     check_motion(preset.motion, preset.tank.extent)
-    check_parts(preset.parts, preset.tank.corners, preset.tanks)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
     check_tanks(preset)
     check_weight(preset)
@@ -223,21 +226,13 @@ def check(preset: Preset) -> None:
     check_video(preset.video, preset.matters)
 
 
-def value_at(preset: Preset, dotted: str) -> object:
-    """The value of a dotted key of a preset, without names that users choose."""
-    value = preset
-    for name in dotted.split("."):
-        value = getattr(value, name)
-    return value
-
-
 def _check_matters(preset: Preset) -> None:
     """Raise LabError for a key that says something of a matter that the tank does not hold."""
     for key, taken in walk(Preset):
         if not taken.of or set(taken.of) & set(preset.matters):
             continue
         section, _, name = key.rpartition(".")
-        table = value_at(preset, section) if section else preset
+        table = attrgetter(section)(preset) if section else preset
         if getattr(table, name) != defaults_of(type(table))[name]:
             remedy = f"set {key} = false" if taken.below or taken.optional else "leave this out"
             what, there = " or ".join(taken.of), "is none" if taken.of == ("water",) else "are none"
@@ -249,9 +244,9 @@ def _check_of_grains(preset: Preset) -> None:
     if preset.material is None:
         read(Material, {}, "material")  # says which key is missing
     (_check_shapely if preset.shapes else _check_shapeless)(preset)
-    settle, tank = preset.run.settles, preset.tank
+    settle = preset.run.settles
     check_grains(preset.grains, bool(preset.shape_classes), settle)
-    sizes = preset.sizes, preset.mean_diameter, tank, _size_key(preset)
+    sizes = preset.sizes, preset.mean_diameter, preset.hold, _size_key(preset)
     check_room(preset.grains, *sizes, settle, preset.stiffness_scale)
     check_dissipation(preset.material, "material", needed=True)
     check_dissipation(preset.wall, "wall", needed=False)

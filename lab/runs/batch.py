@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from lab.base.progress import Progress
 from lab.base.trust import check_state
 from lab.preset.fields import marked
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Preset, value_at
+from lab.preset.schema import Preset
 from lab.preset.units import show
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
 from lab.runs.beds import settled, settling
@@ -58,7 +59,7 @@ class Run:
     def shared(self) -> tuple:
         """The values that must be equal for two runs to share a batch."""
         preset = self.loaded.resolved
-        alike = tuple(value_at(preset, key) for key in marked(Preset, "alike"))
+        alike = tuple(attrgetter(key)(preset) for key in marked(Preset, "alike"))
         return self.scene.shared(), settling(preset), preset.duration, alike
 
     @property

@@ -31,7 +31,8 @@ def write_bed(folder: Path, out: Path, world: int = 0, moving: bool = False) -> 
             names += MOTION
         rows = np.column_stack(columns)
         known = np.isfinite(rows).all(axis=1)
-        kept = known & clear_of_walls(np.where(known[:, None], rows[:, :2], 0.0), recording.outline, INSIDE * radius)
+        hold = np.array(recording.preset.hold.corners)
+        kept = known & clear_of_walls(np.where(known[:, None], rows[:, :2], 0.0), hold, INSIDE * radius)
         head = f"# {recording.name}, bed {world}, {time:.6g} s after its start; m, m/s, rad/s"
     lines = [head, ",".join(names), *(",".join(f"{x:.9g}" for x in row) for row in rows[kept])]
     write_text(out, "\n".join(lines) + "\n")

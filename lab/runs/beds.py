@@ -60,7 +60,7 @@ def settling(preset: Preset) -> Settling:
     """The settling of a preset's beds. Worlds that settle in one batch must agree in it."""
     run, grains = preset.run, preset.grains
     if grains is None:
-        return Settling(preset.tank.corners, "", run.rest, run.settle_limit, settle=False)
+        return Settling(preset.hold.corners, "", run.rest, run.settle_limit, settle=False)
     outline = tuple(map(tuple, filling_outline(preset).tolist()))
     disc_step = build(_of_discs(preset))[0].step if grains.settled_as == "discs" else None
     return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settles, grains.reuse_bed, disc_step)
@@ -92,7 +92,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     if how.disc_step:
         simulation.close()
         simulation = start(scene, _settled_as_discs(scene, position, how, start, progress))
-    elif how.surface == "undisturbed" or how.outline != _corners(scene):
+    elif how.surface == "undisturbed" or how.outline != _corners(scene) or scene.hold:  # without water in the last case
         simulation.close()
         simulation = start(*_poured(scene, position, how, start, progress))
     try:
@@ -141,10 +141,12 @@ def _poured(
 ) -> tuple[Scene, np.ndarray]:
     """The scene, and where its grains lie (W, n, 2) m once they are poured into a closed tank that stands still.
 
-    Its walls reach as high as the grains. An undisturbed bed is poured without friction, which packs it as densely as
-    shaking would, and is then levelled. In the returned scene irregular grains have the angles at which they lie.
+    Its walls reach as high as the grains. Those of a hull that floats are poured without water. An undisturbed bed is
+    poured without friction, which packs it as densely as shaking would, and is then levelled. In the returned scene
+    irregular grains have the angles at which they lie.
     """
-    pouring, grains = replace(scene, outline=np.array(how.outline), open_edges=(), motions=()), scene.grains
+    pouring, grains = scene.poured(np.array(how.outline)), scene.grains
+    hold = scene.tanks[scene.hold]
     if how.surface == "undisturbed":
         smooth = {"grain": _frictionless(grains.grain), "wall": _frictionless(grains.wall)}
         pouring = pouring.holding(replace(grains, **smooth))
@@ -161,10 +163,10 @@ def _poured(
     if how.surface == "undisturbed":
         beds = zip(poured, grains.radius, strict=True)
         poured = np.stack([levelled(bed, radius, pouring.outline, grains.fixed) for bed, radius in beds])
-    if not scene.open_edges:
+    if not hold.open_edges:
         for bed, radius in zip(poured, inner, strict=True):
-            if not np.all(clear_of_walls(bed, scene.outline, FREE * radius)):
-                top = show(float((bed[:, 1] + radius).max() - scene.outline[:, 1].min()), "m")
+            if not np.all(clear_of_walls(bed, hold.outline, FREE * radius)):
+                top = show(float((bed[:, 1] + radius).max() - hold.outline[:, 1].min()), "m")
                 raise LabError(f"grains: the bed is up to {top} high, too high for the tank; ask for fewer grains.")
     return scene, poured
 
@@ -174,7 +176,7 @@ def _frictionless(materials) -> tuple[Material, ...]:
 
 
 def _corners(scene: Scene) -> tuple[tuple[float, float], ...]:
-    return tuple(map(tuple, scene.outline.tolist()))
+    return tuple(map(tuple, scene.tanks[scene.hold].outline.tolist()))
 
 
 def made(

@@ -105,10 +105,10 @@ def refuse_reduced(scene) -> None:
             raise Unavailable(f"air.reduced: does not go with {name}; leave out one of the two.")
 
 
-def refuse_scene(fills: Sequence[int], grains: bool) -> None:
+def refuse_scene(fills: Sequence[int], hold: int | None) -> None:
     """Raise Unavailable, one sentence, for a scene in which water cannot be computed.
 
-    `fills`: how many particles of water are in each tank; grains are in the first.
+    `fills`: how many particles of water are in each tank; `hold`: the one with grains, None without.
     """
-    if grains and fills[0]:
+    if hold is not None and fills[hold]:
         raise Unavailable("water: grains in water are not computed yet; give them tanks of their own.")

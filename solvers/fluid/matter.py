@@ -63,7 +63,8 @@ class WaterMatter(Matter):
         sizes = context.axes, worlds, count, lanes, walls, grid.strips
         self.particles = p = Particles(arrays, *sizes, shifting, water.air, context.among, water.gap > 0.0)
         self.units = units = context.units(p.fluid_blocks)
-        self.load = context.load(arrays.under("water"), units, fluid.substeps)
+        # Free bodies answer as a step of the water begins: for them its load need not stand
+        self.load = context.load(arrays.under("water"), units, 1 if self.bodies.floats else fluid.substeps)
         self.load.lag(wall_added_mass(scene, layers), water.added_mass == "layer")
         self.wall_points = slots, blocks, layers.volumes, layers.firm
         ranges, self.constants = WorkRanges(p, units), Constants(arrays, water, scene.gravity)
@@ -90,8 +91,9 @@ class WaterMatter(Matter):
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * fluid.particles["volume"].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
-        between = [Phase(self.note_passage), *self.extrapolation.coupling.between]
-        self.before, self.between = substeps.first(self._before()), substeps.last(between)
+        passage, rest = [Phase(self.note_passage)], self.extrapolation.coupling.between
+        self.before = substeps.first(self._before())
+        self.between = (*substeps.first(rest), *substeps.last(passage))
         correction = [DivergenceCorrection(arrays, shared, layers, slots).correct] if self.continuity.corrects else []
         acts = self.mover.kick, *correction, self.continuity.continuity_pass, self.finish
         self.after = substeps.last(Phase(act, units) for act in acts)
@@ -280,6 +282,6 @@ def make_water(scene, context: Context) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where they do not move one by one. Raises Unavailable."""
     if not scene.fluid.moved:
         return None
-    refuse_scene(scene.fills, bool(scene.grains))
+    refuse_scene(scene.fills, scene.hold if scene.grains else None)
     refuse_reduced(scene)
     return WaterMatter(scene, context)

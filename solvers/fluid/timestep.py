@@ -6,6 +6,7 @@ from math import inf, pi, sqrt
 from solvers.fluid.given import Water
 from solvers.fluid.viscosity import LAMINAR
 from solvers.fluid.walls.end_walls import EndWallFriction
+from solvers.grains.timestep import shortest_collision
 from solvers.machine.limit import Limit
 
 COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
@@ -16,6 +17,7 @@ END_WALLS = 0.25  # of b²/(12 ν): end-wall friction is explicit
 EVENED = 2.0 / 7.0  # of h/(δ c0): the diffusion of density is explicit, with 2 Σ V η = 7/h² over all neighbours
 SURFACE = 0.25  # of √((ρ_w + ρ_a) h³/(2 π σ)) (Brackbill, Kothe & Zemach 1992, eq. 61; Hu & Adams 2006, eq. 26)
 TRAVELLED = 0.02  # of the shortest period of the tank's motion
+SHARE_OF_COLLISION = 0.25  # of that of grains in a floating room: the longest step of water and room beside them
 SLOW = 1e-9
 
 
@@ -66,10 +68,14 @@ def limits_of_water(scene, closing: float = 0.0) -> list[Limit]:
 def longest_pace(scene, step: float) -> int:
     """How many base steps of `step` (s) a step of the water may be long: beside grains in a ship, by its own bounds.
 
-    Not where a ship takes its water's added mass on her own side, or takes long steps herself.
+    Not where a ship takes its water's added mass on her own side, or takes long steps herself. Beside grains in a room
+    of a free body, which then has the water's steps, it is a quarter of their shortest collision at most.
     """
-    if not (scene.fluid and scene.grains and scene.vessels):
+    if not (scene.fluid and scene.grains and (scene.vessels or scene.hold)):
         return 1
+    if scene.hold:
+        longest = min(*(limit.step for limit in limits_of_water(scene)), SHARE_OF_COLLISION * shortest_collision(scene))
+        return max(1, int(longest / step))
     if scene.fluid.water.added_mass == "layer" or scene.vessels[0].handover:
         return 1
     return max(1, int(min(limit.step for limit in limits_of_water(scene)) / step))

@@ -49,6 +49,8 @@ def make_grains(scene, context: Context) -> GrainMatter:
         rule = RULES[given.shapes.contact](arrays, units, walls, given.shapes, laws.wide)
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
+    if hold:
+        hold.take(load)
     mover = Mover(arrays, units, grains, integrator, context.carrier.rotating, hold)
     context = replace(context, carrier=hold or context.carrier)
     return GrainMatter(scene, context, load, grains, neighbours, contacts, mover)

@@ -69,13 +69,13 @@ class GrainMatter(Matter):
         if self.has_multiples:
             speeds = [calm_speed(scene, 2.0 ** (k + 1)) for k in range(self.doublings)]
             self.calm = own.holding("calm", np.array(speeds), "doubling")
-        self.before = (Phase(self.push, units),)
+        self.before = (Phase(self.push, units), *(mover.hold.gathering if mover.is_aboard else ()))
         self.after = (Phase(self.move, units),)
 
     @property
     def extent(self) -> float:
         """How far (m) from the tank's origin a grain may be."""
-        return float(np.hypot.reduce(np.abs(self.lists.walls.bounds).max(axis=0)))
+        return float(np.hypot.reduce(np.abs(self.lists.walls.bounds_of_grains).max(axis=0)))
 
     @property
     def nearing(self) -> float:

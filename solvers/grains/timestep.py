@@ -9,6 +9,7 @@ import numpy as np
 
 from solvers.grains.checks import FASTEST_STEP
 from solvers.grains.integrators import INTEGRATORS
+from solvers.grains.laws.hertz import hertz_duration
 from solvers.grains.materials import Interface, Material
 from solvers.machine.limit import Limit
 
@@ -100,6 +101,14 @@ def limits(
                 reason = f"{limit.reason} of {name} at {speed:.3g} m/s"
                 found.append(replace(limit, reason=reason, forced=1.0 if limit.firm else FURTHEST))
     return sorted(found, key=lambda limit: limit.step)
+
+
+def shortest_collision(scene) -> float:
+    """Duration (s) of a Hertz collision of two of the smallest grains of a scene at the highest credible speed."""
+    grains, (smallest, _) = scene.grains, scene.grains.sizes
+    mass = 4.0 / 3.0 * pi * smallest**3 * float(grains.density.min())
+    young = max(between.young_modulus for world in grains.interfaces_of for between in world)
+    return hertz_duration(0.5 * mass, 0.5 * smallest, young, max(scene.credible_speed(), SLOWEST))
 
 
 def calm_speed(scene, times: float) -> float:

@@ -230,9 +230,10 @@ def make_bodies(arrays: State, pieces: Pieces, carrier, scene, dt: float) -> Fre
     Raises Unavailable.
     """
     check_aboard(scene)
-    bodies = FreeBodies(arrays, pieces, carrier, len(scene.tanks))
+    every = scene.fluid.substeps if scene.fluid else 1
+    bodies = FreeBodies(arrays, pieces, carrier, len(scene.tanks), every)
     if bodies.count:
-        bodies.join(Contacts(arrays, scene, bodies, dt))
-    if scene.aboard is not None:
+        bodies.join(Contacts(arrays, scene, bodies, every * dt))
+    if scene.hold:
         bodies.take_aboard(OnBody(arrays, scene, bodies, carrier))
     return bodies

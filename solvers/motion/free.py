@@ -1,6 +1,7 @@
 """Bodies that are free to move in the tank: three freedoms each, which respond to all that pushes them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import taichi as ti
@@ -34,8 +35,9 @@ class FreeBodies:
 
     F and M, about the centre of mass, are the loads that all matters book on a body in this step, so that it gains what
     they lose. The velocities u and ω are inertial ones in the tank's axes, half a step behind the places, and drift as
-    those of water do (`Poses`), whatever the motion of the tank. Until its release a body is held: it stands in the
-    tank where it is drawn. Then it starts with the tank's velocity.
+    those of water do (`Poses`), whatever the motion of the tank. Their step is `every` base steps, as that of the
+    water. Until its release a body is held: it stands in the tank where it is drawn. Then it starts with the tank's
+    velocity.
 
     `place` (W, bodies; m, m, rad) are the centre of mass and the turn in the tank, `acceleration` the last known one
     over the earth, which the velocities are to have for the time `behind` (s) until now; `work` (J) is what all loads
@@ -43,12 +45,14 @@ class FreeBodies:
     on the piece `first` + k.
     """
 
-    def __init__(self, arrays: State, pieces: Pieces, carrier, first: int):
+    def __init__(self, arrays: State, pieces: Pieces, carrier, first: int, every: int = 1):
         free = [k for k, part in enumerate(pieces.parts) if part.free]
         self.pieces, self.count, self.worlds, self.first = pieces, len(free), pieces.worlds, first
         self.parts, self.loads, self.exact, self.hold = free, (), arrays.exact, None
         self.carries = False  # whether there are tanks aboard
-        self.phases, self.opening, self.own_loads = (Phase(self.follow),) if free else (), (), ()
+        self.every = every
+        self.phases = (Phase(self.follow, every=every),) if free else ()
+        self.opening, self.own_loads = (), ()
         if not free:
             return
         own, of_part = arrays.under("free"), np.full(pieces.count, NOT_FREE)
@@ -66,11 +70,12 @@ class FreeBodies:
 
     def join(self, contacts) -> None:
         """Take the `contacts` of the bodies, which are found as a step opens."""
-        self.contacts, self.opening, self.own_loads = contacts, contacts.phases, (contacts.load,)
+        self.contacts, self.own_loads = contacts, (contacts.load,)
+        self.opening = tuple(replace(phase, every=self.every) for phase in contacts.phases)
 
     def take_aboard(self, hold) -> None:
         """Carry tanks: the `hold` (`solvers.motion.on_body.OnBody`) of one of the bodies."""
-        self.hold, self.carries = hold, True
+        self.hold, self.carries, self.phases = hold, True, (*self.phases, *hold.phases)
 
     def bear(self, loads: Sequence[Load]) -> None:
         """Respond to these loads from now on, those of all matters and of contacts."""
@@ -85,6 +90,8 @@ class FreeBodies:
                 field.from_numpy(np.tile(self.rows[:, column], (self.worlds, 1)))
             self.state.fill(HELD)
             self.contacts.forget()
+            if self.carries:
+                self.hold.forget()
 
     def account(self, pose: np.ndarray, gravity: float, time: float) -> dict[str, np.ndarray]:
         """The quantities of bodies in tanks at these poses (W, 3), at a time (s), which is now: `OF_BODIES`."""
@@ -170,13 +177,17 @@ class FreeBodies:
         """A load about the tank's origin as one about the centre of mass of a body."""
         return ti.Vector([load[0], load[1], load[2] - (self.place[0][w, i] * load[1] - self.place[1][w, i] * load[0])])
 
+    def is_cargo(self, load: Load) -> bool:
+        """Whether a load is that of what is aboard a body."""
+        return self.carries and load is self.hold.load
+
     @ti.func
     def borne(self, w, i, load: ti.template()):
         """What a body bears of a load, on itself and on what is aboard: force, and moment about its centre of mass."""
         found = self.about_centre(w, i, load.on_piece(w, self.first + self.part_of[i]))
-        if ti.static(self.carries):  # noqa: SIM102 (compiled only where there are tanks aboard)
+        if ti.static(self.is_cargo(load)):  # noqa: SIM102 (compiled only for cargo aboard)
             if i == self.hold.body:
-                found += self.hold.load_from(w, load)
+                found += self.hold.mean(w)
         return found
 
     @ti.func
@@ -195,6 +206,8 @@ class FreeBodies:
         for i in range(self.count):
             if self.state[w, i] != HELD:
                 self.move(w, i, ti.cast(kick, self.exact), step)
+        if ti.static(self.carries):
+            self.hold.taken(w)
 
     @ti.func
     def move(self, w, i, kick, step):
@@ -212,7 +225,8 @@ class FreeBodies:
         self.contacts.book(w, i, in_tank, during)
         if ti.static(self.carries):  # noqa: SIM102
             if i == self.hold.body:
-                self.hold.note(w, before, before + during * a, kick, step)
+                each, turn = ti.static(1.0 / self.every), self.place[2][w, i]
+                self.hold.note(w, turn, before, before + during * a, each * kick, each * step)
         u, arm, farthest = before + during * a, self.table[i, ARM], ti.cast(0.0, self.exact)
         y, z = self.place[0][w, i], self.place[1][w, i]
         u, a = self.drift(w, i, FIRST, u, a, 0.5 * step)

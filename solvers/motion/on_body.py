@@ -4,9 +4,10 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine.errors import Unavailable
+from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
 from solvers.motion.frame import turned
-from solvers.motion.free import CENTRE_Y, CENTRE_Z, HELD, FreeBodies
+from solvers.motion.free import CENTRE_Y, CENTRE_Z, HELD, LOOSE, FreeBodies
 
 LAG, BEFORE_Y, BEFORE_Z, BEFORE, AFTER_Y, AFTER_Z, AFTER, KEPT, TURNED, COSINE, SINE, PULL_Y, PULL_Z = range(13)
 NUMBERS = 13
@@ -27,17 +28,27 @@ class OnBody:
     So the momentum of both is kept to rounding, and moment of momentum and energy to second order. While the body is
     held, its tanks are at rest.
 
+    Beside water a step of the body is `every` base steps long, of the grains one (impulses of the slow one, Tuckerman,
+    Berne & Martyna 1992, but here the fast ones are summed). In the body's step from t_n, in which V and ω stand still,
+    it takes the impulse of its cargo since the step before, and as that is of the time L = (every − 1) Δt/2 before t_n,
+
+        J_n = Σ Δt F(t_k) + L (F(t_n) − F(t_(n−1))),    t_(n−1) < t_k ≤ t_n,
+
+    of the second order. The second term does not add up: what body and grains have together, and what is `gathered`,
+    less L F(t_n), is kept to rounding.
+
     `pieces` bear the load of the cargo: the walls of these tanks, the parts in them, and fixed grains. Their loads are
     in the body's axes, about the drawn origin. `noted` (W, numbers) is what grains need of the body in a step: how long
     (s) before its beginning its velocities are of that time; V and ω before and after the step's kick; D; R(θ_n −
-    θ_(n+½)); R(−θ_(n+½)) g.
+    θ_(n+½)); R(−θ_(n+½)) g. `gathered` (N s, N m s) is the cargo's impulse that the body has not taken yet, over `span`
+    (s), with `former` the load as its last step began; `done` counts the grains' steps in a step of the body.
     """
 
     moving = True
 
     def __init__(self, arrays: State, scene, bodies: FreeBodies, carrier):
-        self.bodies, self.gravity, self.exact = bodies, carrier.gravity, arrays.exact
-        aboard = scene.tanks[0].aboard
+        self.bodies, self.gravity, self.exact, self.every = bodies, carrier.gravity, arrays.exact, bodies.every
+        aboard = scene.tanks[scene.hold].aboard
         holds = [k for k, tank in enumerate(scene.tanks) if tank.aboard == aboard]
         inner = [bodies.first + k for k, part in enumerate(scene.parts) if part.tank in holds]
         self.body = bodies.parts.index(aboard)
@@ -45,11 +56,72 @@ class OnBody:
         self.of_pieces = np.isin(np.arange(scene.pieces), self.pieces)
         own, each = arrays.under("hold"), (Axis("world", scene.worlds), Axis("number", NUMBERS))
         (self.noted,) = own.reals(each, "noted", kind=own.exact, kept=False)
+        impulse = each[0], Axis("freedom", 3)
+        self.gathered, self.former = own.reals(impulse, "gathered", "former", kind=own.exact)
+        (self.span,) = own.reals(each[:1], "span", kind=own.exact)
+        (self.done,) = own.integers(each[:1], "done", kept=False)  # 0 whenever a run can be looked at
+        self.gathering = (Phase(self.gather),)  # once the cargo's load is known
+        self.phases = (Phase(self.go_on),) if self.every > 1 else ()  # once the body has moved
+
+    def take(self, load) -> None:
+        """Take the `load` of the cargo."""
+        self.load = load
+
+    def forget(self) -> None:
+        """Forget what the cargo has pushed."""
+        for field in (self.gathered, self.former, self.span, self.done):
+            field.fill(0)
 
     @ti.func
-    def note(self, w, before: ti.template(), after: ti.template(), kick, dt):
-        """Note the velocities of the body before and after the kick (s) of a step of dt (s), as it begins."""
-        half, turn = 0.5 * dt, self.bodies.place[2][w, self.body]
+    def turn_now(self, w, dt):
+        """The turn of the body as a base step of dt (s) begins; its place is that at the end of its own step."""
+        turn = self.bodies.place[2][w, self.body]
+        if ti.static(self.every > 1):  # noqa: SIM102
+            if self.done[w] > 0:
+                turn -= (self.every - self.done[w]) * dt * self.bodies.velocity[2][w, self.body]
+        return turn
+
+    @ti.func
+    def gather(self, w, t, kick, dt):
+        """Gather the present load of the cargo of a world, over a kick (s) of a base step of dt (s)."""
+        during, step = ti.cast(kick, self.exact), ti.cast(dt, self.exact)
+        load = self.present(w, self.turn_now(w, step))
+        for k in ti.static(range(3)):
+            self.gathered[w, k] = self.gathered[w, k] + during * load[k]
+        self.span[w] = self.span[w] + during
+        if ti.static(self.every > 1):  # noqa: SIM102
+            if self.done[w] == 0:
+                lag = 0.5 * (self.every - 1) * step
+                for k in ti.static(range(3)):
+                    if self.bodies.state[w, self.body] == LOOSE:
+                        self.gathered[w, k] = self.gathered[w, k] + lag * (load[k] - self.former[w, k])
+                    self.former[w, k] = load[k]
+
+    @ti.func
+    def mean(self, w):
+        """The load of the cargo on the body in its present step: force, and moment about its centre of mass."""
+        return ti.Vector([self.gathered[w, k] / self.span[w] for k in ti.static(range(3))])
+
+    @ti.func
+    def taken(self, w):
+        """The body has taken what was gathered."""
+        for k in ti.static(range(3)):
+            self.gathered[w, k] = 0.0
+        self.span[w] = 0.0
+
+    @ti.func
+    def go_on(self, w, t, kick, dt):
+        """Note the body for a base step within its own step, and count these."""
+        if self.done[w] > 0 and self.bodies.state[w, self.body] != HELD:
+            step = ti.cast(dt, self.exact)
+            u = ti.Vector([self.bodies.velocity[k][w, self.body] for k in ti.static(range(3))])
+            self.note(w, self.turn_now(w, step), u, u, step, step)
+        self.done[w] = (self.done[w] + 1) % self.every
+
+    @ti.func
+    def note(self, w, turn, before: ti.template(), after: ti.template(), kick, dt):
+        """Note the velocities of the body before and after the kick (s) of a base step of dt (s), and its turn then."""
+        half = 0.5 * dt
         lag = kick - half
         self.noted[w, LAG] = lag
         self.note_velocity(w, BEFORE_Y, turn - lag * before[2], before)
@@ -98,13 +170,13 @@ class OnBody:
         return found
 
     @ti.func
-    def load_from(self, w, load: ti.template()):
-        """A load of what is aboard on the body: force in the axes of its tank, moment about its centre of mass."""
+    def present(self, w, turn):
+        """The present load of the cargo on the body: force in the axes of its tank, moment about its centre of mass."""
         found = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for piece in ti.static(self.pieces):
-            found += load.on_piece(w, piece)
+            found += self.load.on_piece(w, piece)
         y, z = self.bodies.table[self.body, CENTRE_Y], self.bodies.table[self.body, CENTRE_Z]
-        force = turned(found[0], found[1], self.bodies.place[2][w, self.body])
+        force = turned(found[0], found[1], turn)
         return ti.Vector([force[0], force[1], found[2] - (y * found[1] - z * found[0])])
 
     @ti.func
@@ -133,20 +205,16 @@ class OnBody:
 
 def check_aboard(scene) -> None:
     """Raise Unavailable if a scene (`solvers.scene.Scene`) has tanks aboard parts that cannot carry them."""
-    first, *others = scene.tanks
-    aboard = {tank.aboard for tank in scene.tanks} - {None}
-    if not aboard:
-        return
-    part = scene.parts[first.aboard] if first.aboard in range(len(scene.parts)) else None
     inside = [k for k, tank in enumerate(scene.tanks) if tank.aboard is not None]
-    if aboard != {first.aboard} or not scene.grains:
-        raise Unavailable(
-            "tanks aboard a body hold grains, all are aboard the same one, and the first tank is one of them"
-        )
+    if not inside:
+        return
+    aboard = {scene.tanks[k].aboard for k in inside}
+    if len(aboard) > 1 or not scene.grains:
+        raise Unavailable("tanks aboard a body hold grains, and all are aboard the same one")
+    (number,) = aboard
+    part = scene.parts[number] if number in range(len(scene.parts)) else None
     if part is None or not part.free:
-        raise Unavailable(
-            f"the tank is aboard part {first.aboard}, which does not float free: give it a mass and inertia"
-        )
+        raise Unavailable(f"a tank is aboard part {number}, which does not float free: give it a mass and inertia")
     if scene.vessels or scene.axles or any(scene.motions):
         raise Unavailable(
             "a tank aboard a free body needs all other tanks at rest: take out their motions, ship or axle"
@@ -161,5 +229,5 @@ def check_aboard(scene) -> None:
         raise Unavailable('grains aboard a free body move by run.integrator = "verlet" alone')
     if any(scene.tanks[k].open_edges for k in inside):
         raise Unavailable("a tank aboard a free body must be closed: take out its open edges")
-    if any(tank.thickness != first.thickness for tank in others):
+    if any(tank.thickness != scene.tanks[0].thickness for tank in scene.tanks):
         raise Unavailable("a tank aboard a free body must be as thick as the tank in which the body is")

@@ -37,6 +37,8 @@ class Walls:
         self.parts, self.pieces = len(parts), len(tanks) + len(parts)
         joint = {number: tank for number, tank in enumerate(tanks) if number not in apart}
         self.open = any(tank.open_edges for tank in joint.values())
+        aboard = [tank.outline for tank in tanks if tank.aboard is not None]
+        self.within = np.concatenate(aboard) if aboard else self.outline  # where grains may be
         plates = [_shell(tank, number) for number, tank in joint.items()]
         plates += [_plate(part, number) for number, part in enumerate(parts) if part.tank not in apart]
         segments = [row for plate in plates for row in plate.segments]
@@ -59,8 +61,16 @@ class Walls:
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper corner (m) of the box in which grains that have left the tank are followed."""
-        lower, upper = self.outline.min(axis=0), self.outline.max(axis=0)
+        """Lower and upper corner (m) of the box round all tanks, with a margin round open ones."""
+        return self._box(self.outline)
+
+    @property
+    def bounds_of_grains(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (m) of the box in which grains, also those that have left the tank, are followed."""
+        return self._box(self.within)
+
+    def _box(self, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        lower, upper = corners.min(axis=0), corners.max(axis=0)
         margin = BEYOND * (upper - lower) if self.open else 0.0
         return lower - margin, upper + margin
 

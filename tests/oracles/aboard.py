@@ -6,7 +6,7 @@ import numpy as np
 
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from solvers.tank.parts import Body, Free, Part
+from solvers.tank.parts import Body, Free
 from solvers.tank.tank import Tank
 from tests.oracles.floating import DENSITY, afloat
 from tests.oracles.given import scene_of
@@ -16,7 +16,7 @@ from tests.oracles.water import GRAVITY, box
 RADIUS, THICKNESS, YOUNG = 0.01, 0.02, 5e7  # m, m, Pa
 ROOM, SHELL = np.add(box(0.12, 0.10), (0.03, 1.02)), np.add(box(0.16, 0.14), (0.03, 1.0))  # m, off the origin
 PLACES = np.array([[(0.0, 1.031), (0.0215, 1.0305), (0.045, 1.05), (0.06, 1.09)]])  # of grains that touch nothing
-SHELF, FIXED = Part(((-0.02, 1.075), (0.01, 1.075))), np.array([[0.08, 1.03, RADIUS]])
+SHELF, FIXED = Body(((-0.02, 1.075), (0.01, 1.075)), tank=1), np.array([[0.08, 1.03, RADIUS]])
 
 
 def dry(inertia: float = 4e-4, release: float = 0.0, dt: float = 2e-5, **changes) -> Scene:
@@ -24,11 +24,11 @@ def dry(inertia: float = 4e-4, release: float = 0.0, dt: float = 2e-5, **changes
 
     The centre of mass is not that of the room. `material` changes that of the grains.
     """
-    body = Body(tuple(map(tuple, SHELL)), closed=True, tank=1, free=Free(0.05, inertia, (0.02, 1.06), release))
+    body = Body(tuple(map(tuple, SHELL)), closed=True, free=Free(0.05, inertia, (0.02, 1.06), release))
     grain = material(young=YOUNG, **changes.pop("material", {}))
-    given = {"more_tanks": (Tank(box(8.0, 3.0), THICKNESS),), "parts": (body, SHELF), "aboard": 0, "fixed": FIXED}
+    given = {"more_tanks": (Tank(ROOM, THICKNESS, aboard=0),), "parts": (body, SHELF), "fixed": FIXED}
     given |= {"thickness": THICKNESS, "tangential": "mindlin", "gravity": GRAVITY, "step": dt, "start_speed": 1.0}
-    return scene_of(np.full((1, len(PLACES[0])), RADIUS), ROOM, grain, grain, **given | changes)
+    return scene_of(np.full((1, len(PLACES[0])), RADIUS), box(8.0, 3.0), grain, grain, **given | changes)
 
 
 def masses(run: Simulation) -> np.ndarray:
@@ -94,8 +94,8 @@ def laden(ratio: float = 0.3, **changes) -> tuple[Scene, np.ndarray]:
         [2.0 * radius * (np.arange(count) - 0.5 * (count - 1)), np.full(count, keel + 0.1 + radius)]
     )
     scene = scene_of(
-        np.full((1, count), radius), room, grain, grain, tangential="mindlin", aboard=0, thickness=thick,
-        more_tanks=(Tank(water.outline, thick),), parts=(replace(body, tank=1, free=free),), gravity=GRAVITY,
-        fluid=replace(water.fluid, in_tanks=(0, water.fluid.count)),
+        np.full((1, count), radius), water.outline, grain, grain, tangential="mindlin", thickness=thick,
+        more_tanks=(Tank(room, thick, aboard=0),), parts=(replace(body, free=free),), gravity=GRAVITY,
+        fluid=replace(water.fluid, in_tanks=(water.fluid.count, 0)),
     )  # fmt: skip
     return scene, places[None]

@@ -34,6 +34,23 @@ class SolidBody:
                 yield 0.5 * (corners[:2] + corners[:1:-1])
 
 
+@dataclass(frozen=True)
+class Hold:
+    """A room of a hull that holds the grains: the hull's number among the parts, and those of the parts in the room."""
+
+    hull: int
+    parts: tuple[int, ...]
+
+
+def hold_of(preset) -> Hold | None:
+    """The room of a floating hull that holds a preset's grains; None if they are in the tank."""
+    room = preset.grains.room if preset.grains else None
+    if room is None:
+        return None
+    hull = list(preset.parts).index(room.rpartition(".")[0])
+    return Hold(hull, tuple(k for k, part in enumerate(preset.parts.values()) if part.tank == room))
+
+
 def bodies_of(preset) -> list[SolidBody]:
     """The solid bodies of a preset."""
     found = []

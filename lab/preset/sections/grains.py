@@ -66,6 +66,10 @@ class Grains:
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
         Doc("Corners, y and z each, of the part of the tank in which the grains start, such as a funnel."),
     ] = None
+    room: Annotated[
+        str | None,
+        Doc('The room of a hull that floats in which the grains are, as "HULL.ROOM"; by default they are in [tank].'),
+    ] = None
     bed: Annotated[
         Table | None,
         Columns(NEEDED, MOTION, MOST),
@@ -132,8 +136,8 @@ def check_room(
 ) -> None:
     """Raise LabError for grains that do not fit or would be too many; `size_key` is the key of their size.
 
-    `mean` is the grains' mean diameter (m); `settle`: whether they settle before the tank moves; `scale`: the factor on
-    their moduli.
+    `tank` is the one that they are in, `mean` is the grains' mean diameter (m); `settle`: whether they settle before
+    the tank moves; `scale`: the factor on their moduli.
     """
     if grains.listed:
         check_listed(grains.listed, tank.corners, moving=not settle, scale=scale)

@@ -1,6 +1,6 @@
 """The parts in the tank, as a preset gives them, and their checks."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, make_dataclass
 from math import isfinite
 from typing import Annotated
@@ -69,12 +69,18 @@ Part.__module__ = __name__  # so that it can be sent to another process
 
 def parts_of(preset) -> tuple[solved.Body, ...]:
     """The parts of a preset as the solver takes them."""
-    numbers = {name: number for number, name in enumerate(preset.tanks, start=1)}
+    numbers = {name: number for number, name in enumerate([*preset.tanks, *rooms_of_grains(preset)], start=1)}
     return tuple(part.solved(numbers.get(part.tank, 0), preset.thickness) for part in preset.parts.values())
 
 
-def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], tanks: Mapping[str, object]) -> None:
-    """Raise LabError for the first fault of a part; `outline` is that of [tank] (m), `tanks` are the further ones."""
+def rooms_of_grains(preset) -> list[str]:
+    """The room of a hull that holds a preset's grains, by both names; none if they are in a tank."""
+    return [preset.grains.room] if preset.grains is not None and preset.grains.room is not None else []
+
+
+def check_parts(preset) -> None:
+    """Raise LabError for the first fault of a preset's parts."""
+    parts, outline, tanks = preset.parts, preset.tank.corners, [*preset.tanks, *rooms_of_grains(preset)]
     if len(parts) > MOST_PARTS:
         raise LabError(f"parts: at most {MOST_PARTS} are possible (got {len(parts)}).")
     for name, part in parts.items():

@@ -190,7 +190,9 @@ def contacts_of(recording: Read, again: Again, frame: int, world: int) -> Contac
     at = int(np.searchsorted(samples, time, side="right")) - 1 if len(samples) else -1
     spilled = float(recording.series["spilled"][max(at, 0), world]) if len(samples) else 0.0
     of_grain = np.where(pressing.grains[:, 1] == NOBODY, FIXED, GRAIN)
-    of_piece = np.array([WALL, *recording.preset.parts])[np.maximum(pressing.piece, 0)]  # the scene has one tank
+    of_piece = np.array([WALL, *touching.parts_met(recording.preset)])[
+        np.maximum(pressing.piece, 0)
+    ]  # the scene has one tank
     kind = np.where(pressing.piece == NO_PIECE, of_grain, of_piece)
     inside = recording.radius.shape[1] - int(spilled)
     return Contacts(time, world, kind, np.asarray(recording.radius[world]), position[world], inside, pressing)

@@ -32,9 +32,10 @@ def relaxed(position: np.ndarray, radius: np.ndarray, edges: np.ndarray, burstin
 
 def relaxed_start(scene, position: np.ndarray) -> np.ndarray:
     """Positions (n, 2) m of the first world's grains of a `solvers.scene.Scene`, without excessive overlaps."""
-    grains, outline = scene.grains, scene.outline
+    grains, hold = scene.grains, scene.tanks[scene.hold]
+    outline = hold.outline
     edges = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
-    edges = np.delete(edges, list(scene.open_edges), axis=0)
+    edges = np.delete(edges, list(hold.open_edges), axis=0)
     lightest = grains.sizes[0], float(grains.density.min()), grains.interfaces[0].young_modulus, scene.gravity
     overlaps = (lifting_overlap(share, *lightest) for share in (BURSTING, AT_REST))
     return relaxed(position, grains.radius[0], edges, *overlaps)

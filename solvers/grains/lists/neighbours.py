@@ -69,7 +69,7 @@ class Neighbours:
         own = arrays.under("lists")
         self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
         self.walled = not units.single and not walls.moving  # whether candidates know the walls
-        self.cells = Cells(arrays, grains, *walls.bounds, 2.0 * reach + skin.farthest)
+        self.cells = Cells(arrays, grains, *walls.bounds_of_grains, 2.0 * reach + skin.farthest)
         boxes = Boxes(arrays, grains, self.cells) if skin.together else None
         if not units.single:
             self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across, boxes, reach)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.preset.schema import resolve
 
@@ -93,3 +94,56 @@ def test_two_rooms_and_an_opening_between_them_are_taken():
     hole = {"points": [["0 m", "1 m"], ["0 m", "1.2 m"]], "opens": "2 s"}
     preset = resolve(given(wall="100 mm", density="900 kg/m^3", rooms=rooms, openings={"door": hole}))
     assert preset.rooms == ("box.port", "box.starboard") and preset.openings == ("box.door",)
+
+
+def laden(**changes) -> dict:
+    """A preset with grains in the port room of a hull, with these keys of the grains."""
+    rooms = {"port": {"points": ROOM}, "starboard": {"points": OTHER}}
+    grains = {"room": "box.port", "diameter": "40 mm", "depth": "300 mm", **changes}
+    material = {"density": "1200 kg/m^3", "young": "0.1 GPa", "poisson": 0.3, "restitution": 0.5, "friction": 0.4}
+    preset = given(wall="100 mm", density="400 kg/m^3", rooms=rooms) | {"grains": grains, "material": material}
+    preset["tank"]["thickness"] = "40 mm"
+    return preset
+
+
+def test_grains_in_a_room_of_a_hull_fill_that_room():
+    """The tank stays that of the water; the grains lie in the room, aboard the hull."""
+    scene, position = build(resolve(laden()))
+    room = scene.tanks[scene.hold]
+    assert scene.hold == 1 and room.aboard == 0 and scene.fills == (scene.fluid.count, 0)
+    assert scene.grains.count == pytest.approx(0.35 * 0.3 / 0.04**2, rel=0.25)
+    below = position[0][position[0][:, 1] < 1.5]  # what does not fit in lies above, to be poured
+    assert len(below) and room.holds(below).all()
+
+
+def test_a_hull_that_her_cargo_sinks_is_refused_by_her_weight_with_it():
+    """Walls of 400 kg/m³ on 0.44 m² float; grains of gold on top of these do not."""
+    preset = laden()
+    preset["material"]["density"] = "19300 kg/m^3"
+    with pytest.raises(LabError, match=r"^parts.box.density: this hull with .* kg of grains is heavier"):
+        build(resolve(preset))
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "remedy"),
+    [
+        (lambda p: p["grains"].update(room="box.hold"), "grains.room", "the rooms are box.port, box.starboard"),
+        (lambda p: p["parts"]["box"].pop("density"), "grains.room", "give parts.box.density"),
+        (
+            lambda p: p["parts"]["box"].update(openings={"hole": {"points": [["0 m", "1 m"], ["0 m", "1.2 m"]]}}),
+            "parts.box.openings.hole",
+            "let it lead to another room",
+        ),
+        (lambda p: p["parts"]["box"]["rooms"]["port"].update(depth="0.1 m"), "parts.box.rooms.port.depth", "leave it"),
+        (lambda p: p.update(motion={"roll": {"amplitude": "1 deg", "frequency": "1 Hz"}}), "grains.room", "at rest"),
+        (lambda p: p["run"].update(integrator="gear"), "run.integrator", "leave it out"),
+        (lambda p: p["grains"].update(depth="2 m"), "grains.depth", "less than the tank's height"),
+    ],
+)
+def test_a_room_that_cannot_hold_grains_is_refused(change, key, remedy):
+    preset = laden()
+    change(preset)
+    with pytest.raises(LabError) as caught:
+        resolve(preset)
+    told = str(caught.value)
+    assert told.startswith(key) and remedy in told and "\n" not in told

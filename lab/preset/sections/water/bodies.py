@@ -1,7 +1,8 @@
 """Bodies that float, and hulls with rooms and openings, as a preset gives them, and their checks."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.kept.content import INSIDE
 from lab.preset.outline import Point, simple_polygon
+from lab.preset.sections.tank import Tank as PresetTank
 from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit
 from solvers.tank import parts as solved
@@ -17,6 +19,7 @@ from solvers.tank.tank import Tank
 
 FREE = "centre", "inertia", "release", "friction", "restitution"  # keys of bodies that float alone
 OF_HULLS = "rooms", "openings"  # keys of hulls alone
+IN_WALL = ""  # where an opening that does not lead through the wall ends
 Corners = Annotated[tuple[Point, ...], Unit("m")]
 
 
@@ -86,6 +89,15 @@ KEYS = [
 
 class WithBodies:
     """What a preset's parts are, by name: the bodies that float, the rooms and the openings of hulls."""
+
+    @cached_property
+    def hold(self) -> PresetTank:
+        """The tank that the grains are in: [tank], or a room of a hull that floats, in the axes of its drawing."""
+        if self.grains is None or self.grains.room is None:
+            return self.tank
+        name, _, room = self.grains.room.rpartition(".")
+        corners = tuple(map(tuple, rooms_of(self.parts[name])[room].tolist()))
+        return replace(self.tank, width=None, height=None, outline=corners, lid=True)
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -210,21 +222,31 @@ def _faults_of_hull(part) -> Iterator[tuple[str, str]]:
             if other < name and (_overlap(corners, theirs) or _distance(corners, theirs) < 0.99 * part.wall):
                 yield key, f"this room meets {other}; leave a wall of {show(part.wall, 'm')} between them"
     for name, opening in part.openings.items():
-        yield from _faults_of_opening(part, name, opening, [outer, *rooms.values()])
+        yield from _faults_of_opening(part, name, opening)
 
 
-def _faults_of_opening(part, name: str, opening: Opening, shapes: list[np.ndarray]) -> Iterator[tuple[str, str]]:
+def _faults_of_opening(part, name: str, opening: Opening) -> Iterator[tuple[str, str]]:
     key = f"openings.{name}.points"
     if len(opening.points) != 2 or opening.points[0] == opening.points[1]:
         yield key, f"an opening has two ends (got {len(opening.points)})"
         return
-    ends = np.array(opening.points)
+    one, other = sides_of(part, opening)
+    if one == other or IN_WALL in (one, other):
+        yield key, "this opening does not lead from a room through the wall; lay its ends in the middle of the wall"
+
+
+def sides_of(part, opening: Opening) -> list[str | None]:
+    """What an opening joins: the names of rooms, None for the water outside, `IN_WALL` where it ends in a wall."""
+    rooms, ends = rooms_of(part), np.array(opening.points)
+    shapes = [np.array(simple_polygon(part.points)), *rooms.values()]
     along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
     middle, across = ends.mean(axis=0), part.wall * np.array([-along[1], along[0]])
-    sides = [[Tank(shape, 1.0).holds((middle + sign * across)[None])[0] for shape in shapes] for sign in (1, -1)]
-    rooms = [(side.index(True, 1) if True in side[1:] else 0) if side[0] else -1 for side in sides]  # -1: outside
-    if rooms[0] == rooms[1] or 0 in rooms:
-        yield key, "this opening does not lead from a room through the wall; lay its ends in the middle of the wall"
+    found = []
+    for point in (middle + across, middle - across):
+        inside, *within = (Tank(shape, 1.0).holds(point[None])[0] for shape in shapes)
+        room = next((name for name, there in zip(rooms, within, strict=True) if there), IN_WALL)
+        found.append(room if inside else None)
+    return found
 
 
 def _distance(corners: np.ndarray, other: np.ndarray) -> float:

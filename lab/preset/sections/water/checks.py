@@ -68,10 +68,10 @@ def _check_damping(preset: Whole) -> None:
 
 def _check_company(preset: Whole) -> None:
     """Raise LabError for what is in the tank beside water, or carries it, and the solver cannot compute."""
-    if preset.grains is not None and any(given_of(preset.water).values()):
+    if preset.grains is not None and preset.grains.room is None and any(given_of(preset.water).values()):
         raise LabError(
-            "water: grains and water in one tank are not computed yet; leave out [grains] or [water], or give the "
-            "water a tank of its own, [tanks.NAME]."
+            "water: grains and water in one tank are not computed yet; leave out one of them, or give the water a "
+            "tank of its own, [tanks.NAME], or the grains a room of a hull, grains.room."
         )
     if preset.water.model != "sph" and preset.ship is None:
         named = preset.water.model
