@@ -89,13 +89,13 @@ def hull(
 ) -> Scene:
     """A hull, 1 m wide and high, held with its keel so high (m) over the floor of a tank 2 m wide, `depth` (m) deep.
 
-    Its walls are `wall` spacings thick; within is water up to `inside` (m) over its floor, in which a `hole` (m) wide
-    opens after a while (s).
+    Its walls are `wall` spacings thick; within is water up to `inside` (m) over its floor. In its right side a `hole`
+    (m) high opens after a while (s), 0.1 m over the keel.
     """
     thick, sound = wall * spacing, 10.0 * sqrt(GRAVITY * depth)
     outer, room = rectangle((-0.5, keel), (0.5, keel + 1.0)), rectangle((thick - 0.5, keel + thick), (0.5 - thick, 1.3))
-    middle = keel + 0.5 * thick
-    openings = (Opening(((-0.5 * hole, middle), (0.5 * hole, middle)), opens),) if hole else ()
+    middle, foot = 0.5 - 0.5 * thick, keel + 0.1
+    openings = (Opening(((middle, foot), (middle, foot + hole)), opens),) if hole else ()
     held = Free(600.0, 120.0, (0.0, keel + 0.4), NEVER)
     body = Body(outer, closed=True, free=held, hull=Hull(thick, (room,), openings))
     drops = lattice(2.0, depth, spacing, sound)

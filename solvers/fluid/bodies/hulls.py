@@ -172,9 +172,10 @@ class Hulls:
 
     @ti.func
     def through(self, n: ti.template(), w, place: ti.template(), apart: ti.template()):
-        """Whether lines from a place to others, `apart` from it, come nearest to the wall in an opening, 0 to 1.
+        """Whether lines from a place to others, `apart` from it, lead through the wall in an opening, 0 to 1.
 
-        It is 1 within, and fades over a smoothing length from the ends of the opening on, in the wall.
+        It is 1 within, and fades over a smoothing length from the ends of the opening on, in the wall. A line that
+        comes no nearer to the middle of the wall than half the wall does not lead through it here.
         """
         p, k = self.particles, ti.static(self.hole_owners[n])
         found = p.zeros()
@@ -193,7 +194,9 @@ class Hulls:
             way = dot(off, along) + share * dot(apart, along)
             sharp, length = ti.cast(self.lines[n, SHARP], p.real), ti.cast(self.lines[n, LENGTH], p.real)
             deep = ti.max(0.0, ti.min(1.0, ti.min(way, length - way) * sharp + 1.0))
-            found = deep * deep * (3.0 - 2.0 * deep)
+            off_middle, half = across + share * beyond, ti.cast(self.lines[n, BLEND], p.real)
+            near = ti.select(off_middle * off_middle < half * half, p.ones(), p.zeros())
+            found = near * (deep * deep * (3.0 - 2.0 * deep))
         return found
 
     @ti.kernel

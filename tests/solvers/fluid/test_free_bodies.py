@@ -98,7 +98,7 @@ def test_a_body_far_lighter_than_what_it_displaces_is_let_go_under_water(dropped
 
 @pytest.fixture(scope="module")
 def thin(dropped):
-    """A hull with walls of one spacing, water within, and a hole in its floor that is covered: run and its state."""
+    """A hull with walls of one spacing, water within, and a hole in its side that is covered: run and its state."""
     dropped[0].close()
     run = Simulation(hull(wall=1.0, inside=0.3, hole=0.3, opens=1e9), threads=1)
     yield run, run.state()
@@ -124,7 +124,10 @@ def test_a_thin_wall_keeps_the_water_on_either_side_apart(thin):
 
 
 def test_water_flows_in_by_forces_that_are_equal_and_opposite(thin):
-    """Open the hole: water enters with the flow by which the room fills, and momentum is kept to 1e-12 of Σ|F|Δt."""
+    """Open the hole: water enters there alone, by the flow by which the room fills; momentum to 1e-12 of Σ|F|Δt.
+
+    The hole has a wall over against it, on the room's other side.
+    """
     run, start = thin
     run.restore(start)
     lines = run.water.bodies.hulls.lines
