@@ -45,8 +45,9 @@ def plots(beds: Sequence[Bed], hues: Sequence[tuple], series: Sequence[tuple] = 
     of_gauges = _of_gauges(wet, hue, series) if wet else []
     carried = any(bed.footage.sea or bed.footage.rail for bed in beds)
     moved = [_of_motion(beds, hues)] if not wet or carried else []
-    return (moved + of_gauges)[:MOST_PLOTS] or [
-        _of_a_floating_body(wet, hue) or _of_a_body(wet, hue) or _of_a_flow(wet, hue) or _of_the_centre(wet, hue)
+    afloat = [plot for plot in (_of_a_floating_body(wet, hue), _of_rooms(wet, hue, series)) if plot] if wet else []
+    return (moved + afloat + of_gauges)[:MOST_PLOTS] or [
+        _of_a_body(wet, hue) or _of_a_flow(wet, hue) or _of_the_centre(wet, hue)
     ]
 
 
@@ -92,12 +93,35 @@ def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple], series: Sequence[t
 
 
 def _of_a_floating_body(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot | None:
-    """How far the first floating body has turned."""
+    """How far the first floating body has turned; its heave, where that moves its corners more."""
     if not all(bed.footage.floating for bed in beds):
         return None
-    plot = Plot(("time (s)", f"heel of {beds[0].footage.floating[0]} (deg)"))
+    name = beds[0].footage.floating[0]
+    arm = 0.5 * float(np.ptp(beds[0].footage.parts[name], axis=0).max())
+    ways = np.max([np.ptp(_measured(bed, "body_place")[:, 0], axis=0) for bed in beds], axis=0)
+    turns = arm * ways[2] > ways[1]
+    plot = Plot(("time (s)", f"heel of {name} (deg)" if turns else f"heave of {name} (mm)"))
     for bed in reversed(beds):
-        plot.add(bed, np.rad2deg(_measured(bed, "body_place")[:, 0, 2]), hue.get(bed, palette.LINE))
+        place = _measured(bed, "body_place")[:, 0]
+        plot.add(
+            bed, np.rad2deg(place[:, 2]) if turns else 1e3 * (place[:, 1] - place[0, 1]), hue.get(bed, palette.LINE)
+        )
+    return plot
+
+
+def _of_rooms(beds: Sequence[Bed], hue: Mapping[Bed, tuple], series: Sequence[tuple]) -> Plot | None:
+    """The water in rooms that openings lead to: in each of one bed, in all together of several."""
+    rooms = beds[0].footage.rooms
+    if not rooms:
+        return None
+    plot = Plot(("time (s)", "water (kg)"))
+    if len(beds) == 1:
+        for k, (name, colour) in reversed(list(enumerate(zip(rooms, series, strict=False)))):
+            plot.add(beds[0], _measured(beds[0], "room_water")[:, k], colour, name.partition(".")[2])
+        plot.names.reverse()
+    else:
+        for bed in reversed(beds):
+            plot.add(bed, _measured(bed, "room_water").sum(axis=-1), hue.get(bed, palette.LINE))
     return plot
 
 

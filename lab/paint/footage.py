@@ -83,6 +83,11 @@ class Footage:
         return self._preset.bodies
 
     @property
+    def rooms(self) -> tuple[str, ...]:
+        """The names of the rooms of hulls, if openings lead to any."""
+        return tuple(self._preset.rooms) if self._preset.openings else ()
+
+    @property
     def afloat(self) -> np.ndarray:
         """The corners (k, 2) m of a ship's hull and of all tanks as they are drawn."""
         return np.concatenate([self.sea.hull, *(basin.drawn for basin in self.basins)])

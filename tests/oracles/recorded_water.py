@@ -61,7 +61,10 @@ def record_pool(
         step=1e-3,
         **options,
     )
-    tables, sizes = tables_of(preset, False), sizes_of(names_of(preset), np.zeros((1, 0)), volume)
+    tables, sizes = (
+        tables_of(preset, False),
+        sizes_of(names_of(preset, options.get("parts", ())), np.zeros((1, 0)), volume),
+    )
     zero = {
         table: {name: np.zeros(shape) for name, (shape, _) in rows_of(quantities, sizes).items()}
         for table, quantities in tables.items()

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from PIL import Image, ImageDraw
 
 from lab.paint.painter import Camera, paint_plate, paint_shape
+from lab.paint.water.gauges import LETTERS, SMALLEST, write_beside
 from lab.preset.sections.water.bodies import rooms_of
 
 PLATE, EDGE, COVER = 0.3, 0.12, 0.1  # thickness of plates, of outlines and of covers, in u
@@ -15,13 +17,17 @@ PALE = 0.45  # of the part's colour in a solid body; the rest is the paper's
 
 @dataclass(frozen=True)
 class SolidBody:
-    """A body as it is drawn: number and name of the part, its outline, rooms and openings (m), a time (s) for each."""
+    """A body as it is drawn: number and name of the part, its outline, rooms and openings (m), a time (s) for each.
+
+    `names` are those of the openings.
+    """
 
     number: int
     name: str
     outline: np.ndarray
     rooms: tuple[np.ndarray, ...]
     openings: tuple[tuple[np.ndarray, float], ...]
+    names: tuple[str, ...] = ()
 
     def shapes(self, time: float) -> list[np.ndarray]:
         """The polygons (m, 2) m that bound its walls by the even–odd rule at a time (s)."""
@@ -57,7 +63,8 @@ def bodies_of(preset) -> list[SolidBody]:
     for number, (name, part) in enumerate(preset.parts.items()):
         if part.closed:
             openings = tuple((passage(one.points, part.wall), one.opens) for one in part.openings.values())
-            found.append(SolidBody(number, name, np.array(part.points), tuple(rooms_of(part).values()), openings))
+            rooms = tuple(rooms_of(part).values())
+            found.append(SolidBody(number, name, np.array(part.points), rooms, openings, tuple(part.openings)))
     return found
 
 
@@ -89,3 +96,18 @@ def _paint_body(picture: np.ndarray, camera: Camera, body: SolidBody, move, time
     paint_shape(picture, camera, shapes, 0.0 if hollow else EDGE * unit, theme.part, fill)
     for line in body.covers(time):
         paint_plate(picture, camera, move(line), COVER * unit, theme.paper)
+
+
+def name_openings(image: Image.Image, camera: Camera, bed, row: float, time: float, unit: float, theme) -> None:
+    """Write the names of the openings of a bed's bodies beside them; those that are covered at a time (s) pale."""
+    if LETTERS * unit < SMALLEST:
+        return
+    draw, written = ImageDraw.Draw(image), []
+    for body in bed.footage.bodies:
+        for name, (corners, opens) in zip(body.names, body.openings, strict=True):
+            middle, across = corners.mean(axis=0), corners[3] - corners[0]
+            out = across * np.sign(across @ (middle - body.outline.mean(axis=0)) or 1.0)
+            at, end = camera.pixels(bed.moved(np.array([middle, middle + out]), number=body.number, frame=row))
+            towards = (end - at) / np.linalg.norm(end - at)
+            hue = theme.accent if opens <= time else theme.quiet
+            write_beside(draw, name, (at, towards), unit, hue, theme.paper, written)

@@ -13,7 +13,7 @@ from lab.paint.page.layout import TEXT, Box
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera, Edges, paint_grains, paint_tank, to_discs
 from lab.paint.scene.backdrop import paint_sky
-from lab.paint.scene.bodies import paint_parts
+from lab.paint.scene.bodies import name_openings, paint_parts
 from lab.paint.scene.cells import Cells, Room, lay_cells
 from lab.paint.scene.drive import paint_arrow
 from lab.paint.scene.floating_ship import FloatingShip
@@ -137,9 +137,11 @@ class SceneView:
         return camera.carried(self._pose[frame, k]) if self._earth else camera
 
     def write_names(self, image: Image.Image, frame: int) -> None:
-        """Write the names of the gauges beside them."""
+        """Write the names of gauges and openings beside them."""
         for k, marks in self.marks.items():
-            marks.name(image, self.tank_camera(k, frame))
+            camera, row = self.tank_camera(k, frame), self._rows[k][frame]
+            marks.name(image, camera)
+            name_openings(image, camera, self.beds[k], row, self._time[frame], self._unit, self._theme)
 
     def draw_ends(self, image: Image.Image, frame: int) -> None:
         """Draw a band with the text on the loss of each ship lost so far, at the foot of her cell."""

@@ -72,20 +72,14 @@ class Marks:
         return min(self.unit, OF_TANK * camera.scale * float(np.ptp(self.outline, axis=0).max()))
 
     def _write(self, draw: ImageDraw.ImageDraw, camera: Camera, name: str, spot: tuple, written: list) -> None:
-        """Write a name outwards of a place in the tank, beside those that are `written`: their middles and halves."""
+        """Write a name outwards of a place in the tank, beside those that are `written`."""
         u, (place, outwards) = self._u(camera), spot
-        face = deco.font(LETTERS * u, bold=True)
         at, out = camera.pixels(place[None])[0], camera.pixels(np.array([place, place + outwards]))
         towards = (out[1] - out[0]) / camera.scale
-        half = 0.5 * np.array([face.getlength(name), LETTERS * u])  # of the text, so that it clears the dot
-        if abs(towards[0]) > abs(towards[1]) and half[0] > LONG * u:
+        half = 0.5 * deco.font(LETTERS * u, bold=True).getlength(name)
+        if abs(towards[0]) > abs(towards[1]) and half > LONG * u:
             towards = -towards  # beside the tank there is no room for it
-        at = at + towards * (AWAY * u + np.abs(towards) @ half)
-        along = np.array([0.0, -2.0 * half[1]] if abs(towards[0]) > abs(towards[1]) else [2.0 * half[0], 0.0])
-        tries = (at + step * along for step in TRIES)
-        at = next((one for one in tries if not any((abs(one - m) < 0.95 * (half + h)).all() for m, h in written)), at)
-        written.append((at, half))
-        draw.text(tuple(at), name, self.hues[name], face, "mm", stroke_width=2, stroke_fill=self.paper)
+        write_beside(draw, name, (at, towards), u, self.hues[name], self.paper, written)
 
     def _paint_sensor(self, picture: np.ndarray, camera: Camera, gauge: Gauge, hue: tuple, u: float) -> None:
         along, outwards = self._wall(gauge)
@@ -112,6 +106,24 @@ class Marks:
         for (y0, z0), (y1, z1) in zip(self.outline[crossed], after[crossed], strict=True):
             heights += [z0, z1] if y0 == y1 else [z0 + (z1 - z0) * (y - y0) / (y1 - y0)]
         return (min(heights), max(heights)) if heights else tuple(self.outline[:, 1][[0, 0]])
+
+
+def write_beside(
+    draw: ImageDraw.ImageDraw, name: str, spot: tuple, u: float, hue: tuple, paper: tuple, written: list
+) -> None:
+    """Write a name beside a spot, a place and a direction in pixels, where it covers none of those that are `written`.
+
+    u: pixels a unit; paper: the colour around the letters. `written` are the middles and halves (pixels) of names.
+    """
+    at, towards = spot
+    face = deco.font(LETTERS * u, bold=True)
+    half = 0.5 * np.array([face.getlength(name), LETTERS * u])  # of the text, so that it clears the dot
+    at = at + towards * (AWAY * u + np.abs(towards) @ half)
+    along = np.array([0.0, -2.0 * half[1]] if abs(towards[0]) > abs(towards[1]) else [2.0 * half[0], 0.0])
+    tries = (at + step * along for step in TRIES)
+    at = next((one for one in tries if not any((abs(one - m) < 0.95 * (half + h)).all() for m, h in written)), at)
+    written.append((at, half))
+    draw.text(tuple(at), name, hue, face, "mm", stroke_width=2, stroke_fill=paper)
 
 
 def hues_of(pool: Pool, series: Sequence[tuple] = palette.SERIES) -> dict[str, tuple]:
