@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import taichi as ti
 
 from solvers.fluid.given import Fluid, Water
 from solvers.fluid.start.parts import clear_of
@@ -55,3 +56,24 @@ def test_water_round_a_part_does_not_feel_the_parts_and_the_water_of_another_tan
         np.testing.assert_allclose(both["loads"][[k, 2 + k]], one["loads"], atol=1e-6 * np.abs(one["loads"]).max())
     total = both["loads"].sum(axis=0)
     np.testing.assert_allclose(total, both["wall_force"][0], atol=1e-12 * np.abs(total).max())
+
+
+def test_several_tanks_of_water_need_no_part_in_them():
+    """No part stands in them, and what parts bear there is nothing: the function that all of water's steps ask."""
+    drops = lattice(WIDE, 0.05, SPACING, SOUND)[0]
+    fluid = Fluid(Water(SPACING, SOUND), np.concatenate([drops, drops])[None], (len(drops), len(drops)))
+    scene = scene_of(
+        np.zeros((1, 0)), box(WIDE, HIGH), gravity=GRAVITY, fluid=fluid, more_tanks=(Tank(box(WIDE, HIGH), 1.0),)
+    )
+    run = Simulation(scene, threads=1)
+    bodies = run.water.bodies
+
+    @ti.kernel
+    def borne() -> ti.f64:
+        return bodies.borne(0, 1).norm()
+
+    try:
+        assert run.parts.bodies.count == 0
+        assert borne() == 0.0
+    finally:
+        run.close()
