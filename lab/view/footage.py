@@ -11,7 +11,8 @@ from lab.assembly.grains import fixed_of, radii_of
 from lab.assembly.scene import vessels
 from lab.assembly.water import air_volumes_of, volumes_of
 from lab.paint.cargo.looks import Stowage
-from lab.paint.footage import NO_GRAINS, Bed, moved_line
+from lab.paint.footage import NO_GRAINS, Bed
+from lab.paint.moves import moved_line
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.paint.water.basins import basins_of
@@ -76,7 +77,7 @@ class LiveFootage:
         self.static = static
         for name in ("radius", "kind", "water", "outline", "open_edges", "fixed", "parts", "shapes"):
             setattr(self, name, getattr(static, name))
-        self.matters = static.preset.matters
+        self.matters, self.hold = static.preset.matters, None
         volume = self.water.volume if self.water else np.zeros((1, 0))
         self.basins = basins_of(static.preset, static.outline, static.open_edges, volume)
         self.cargo = Stowage.of(static.preset)

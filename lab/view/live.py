@@ -66,8 +66,11 @@ def steerable(loaded: LoadedPreset) -> LoadedPreset:
     """The preset prepared for steering: one bed, none of its own motions, and a picture rate of at least PICTURES.
 
     Nobody knows how a hand will move the water, so its speed of sound follows from a fall through the whole tank.
+    Raises LabError for grains in a floating hull, whose tank must be at rest.
     """
     preset = loaded.resolved
+    if preset.grains is not None and preset.grains.room is not None:
+        raise LabError("grains.room: the tank of a hull with grains cannot be steered; `cargolab run` films it.")
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))
     changes = {"motion": Motion(), "run": replace(preset.run, repeats=1, duration=preset.duration), "record": record}
     if preset.water and preset.water.sound_speed == "auto":
