@@ -64,13 +64,8 @@ TELLING = (
     "gauge_impulse_",
     "force_impulse_",
     "water_residual",
-    "gauge_mean_",
-    "gauge_std_",
-    "trough_",
-    "gauge_peak_scatter_",
-    "force_peak_scatter_",
-    "crest_scatter_",
-    "trough_scatter_",
+    *("gauge_mean_", "gauge_std_", "trough_"),
+    *("gauge_peak_scatter_", "force_peak_scatter_", "crest_scatter_", "trough_scatter_"),
 )
 HEADLINES, TOLD = 3, 6  # numbers at the head of the page, and in the terminal
 

@@ -1,5 +1,6 @@
 """Bodies that float, for tests: boxes in the middle of a tank, and how the whole of water and bodies is balanced."""
 
+from dataclasses import replace
 from math import cos, sin, sqrt
 
 import numpy as np
@@ -108,3 +109,44 @@ def hull(
     water = Water(**{"spacing": spacing, "sound_speed": sound, "density": DENSITY} | of_water)
     given = {"outline": box(2.0, 2.0), "matters": (Fluid(water, drops),), "parts": (body,), "gravity": GRAVITY}
     return Scene(**{**given, "thickness": 1.0, **changes})
+
+
+def pair(width: float = 2.0, spacing: float = 0.05, **changes) -> Scene:
+    """Two boxes, of half and of 0.7 times the water's density, heeled towards each other between two walls.
+
+    What touches first are their upper corners, above the water.
+    """
+    one = afloat(0.5, size=(0.5, 0.3), place=(-0.6, 0.8), heel=0.15, tank=(width, 1.4), spacing=spacing)
+    two = afloat(0.7, size=(0.5, 0.3), place=(0.0, 0.74), heel=0.1, tank=(width, 1.4), spacing=spacing)
+    parts = tuple(replace(scene.parts[0], hull=None) for scene in (one, two))
+    drops = lattice(width, 0.8, spacing, one.fluid.water.sound_speed)
+    drops = drops[:, clear_of(drops["position"][0], parts, spacing)]
+    return replace(one, parts=parts, matters=(Fluid(one.fluid.water, drops),), **changes)
+
+
+def solid(scene: Scene, centre: float | None = None) -> Scene:
+    """The same scene with its body full, and its centre of mass at a height (m) over the keel, as it floats upright."""
+    body = replace(scene.parts[0], hull=None)
+    if centre is not None:
+        corners = np.array(body.points)
+        keel, up = 0.5 * (corners[0] + corners[1]), corners[3] - corners[0]
+        place = keel + centre * up / np.hypot(*up)
+        body = replace(body, free=replace(body.free, centre=tuple(place.tolist())))
+    return replace(scene, parts=(body,))
+
+
+def account(run: Simulation, until: float, every: float = 0.02) -> tuple[float, float]:
+    """What the energy of water and bodies lacks (J) until a time (s), at most, and the most of what is exchanged.
+
+    Exchanged is the kinetic energy of the water and of the bodies, and what viscosity, diffusion and contacts took.
+    """
+    totals, exchanged = [], 0.0
+    while run.time < until:
+        run.advance(max(1, round(every / run.dt)))
+        rows = {name: values[0] for name, values in run.observe().items()}
+        taken = rows["water_viscous"] + rows["water_diffusive"] + rows["contact_lost"]
+        kept = rows["water_total"] + rows["body_energy"].sum() + rows["contact_elastic"] + rows["water_wall_energy"]
+        inertia, speed = run.parts.bodies.rows[:, [0, 0, 1]], rows["body_velocity"]
+        totals.append(kept + taken)
+        exchanged = max(exchanged, rows["water_kinetic"] + 0.5 * (inertia * speed**2).sum() + abs(taken))
+    return float(np.ptp(totals)), float(exchanged)

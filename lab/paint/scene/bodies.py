@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from PIL import Image, ImageDraw
 
 from lab.paint.painter import Camera, paint_plate, paint_shape
-from lab.paint.water.gauges import LETTERS, SMALLEST, write_beside
 from lab.preset.sections.water.bodies import rooms_of
 
 PLATE, EDGE, COVER = 0.3, 0.12, 0.1  # thickness of plates, of outlines and of covers, in u
@@ -96,18 +94,3 @@ def _paint_body(picture: np.ndarray, camera: Camera, body: SolidBody, move, time
     paint_shape(picture, camera, shapes, 0.0 if hollow else EDGE * unit, theme.part, fill)
     for line in body.covers(time):
         paint_plate(picture, camera, move(line), COVER * unit, theme.paper)
-
-
-def name_openings(image: Image.Image, camera: Camera, bed, row: float, time: float, unit: float, theme) -> None:
-    """Write the names of the openings of a bed's bodies beside them; those that are covered at a time (s) pale."""
-    if LETTERS * unit < SMALLEST:
-        return
-    draw, written = ImageDraw.Draw(image), []
-    for body in bed.footage.bodies:
-        for name, (corners, opens) in zip(body.names, body.openings, strict=True):
-            middle, across = corners.mean(axis=0), corners[3] - corners[0]
-            out = across * np.sign(across @ (middle - body.outline.mean(axis=0)) or 1.0)
-            at, end = camera.pixels(bed.moved(np.array([middle, middle + out]), number=body.number, frame=row))
-            towards = (end - at) / np.linalg.norm(end - at)
-            hue = theme.accent if opens <= time else theme.quiet
-            write_beside(draw, name, (at, towards), unit, hue, theme.paper, written)

@@ -13,10 +13,11 @@ from lab.paint.page.layout import TEXT, Box
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera, Edges, paint_grains, paint_tank, to_discs
 from lab.paint.scene.backdrop import paint_sky
-from lab.paint.scene.bodies import name_openings, paint_parts
+from lab.paint.scene.bodies import paint_parts
 from lab.paint.scene.cells import Cells, Room, lay_cells
 from lab.paint.scene.drive import paint_arrow
 from lab.paint.scene.floating_ship import FloatingShip
+from lab.paint.scene.openings import name_openings
 from lab.paint.scene.overlay import Overlay
 from lab.paint.scene.ship import silhouette
 from lab.paint.water.gauges import Marks, hues_of

@@ -9,7 +9,7 @@ from lab.paint.curves import plots
 from lab.paint.footage import Bed, Footage
 from lab.paint.page.theme import LIGHT
 from lab.paint.painter import Camera
-from lab.paint.scene.bodies import name_openings
+from lab.paint.scene.openings import name_openings
 from lab.recording import open_recording
 from lab.report.plots import figures
 from tests.oracles.recorded_water import pool, record_pool
