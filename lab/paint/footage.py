@@ -11,10 +11,10 @@ import numpy as np
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.cargo.looks import Stowage
-from lab.paint.moves import moved_line, on_the_way
 from lab.paint.painter import Edges
 from lab.paint.scene.bodies import bodies_of, hold_of
 from lab.paint.scene.drive import drive_text
+from lab.paint.scene.moves import moved_line, on_the_way
 from lab.paint.sea import Rail, Sea
 from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool

@@ -12,8 +12,8 @@ from lab.assembly.scene import vessels
 from lab.assembly.water import air_volumes_of, volumes_of
 from lab.paint.cargo.looks import Stowage
 from lab.paint.footage import NO_GRAINS, Bed
-from lab.paint.moves import moved_line
 from lab.paint.painter import Edges
+from lab.paint.scene.moves import moved_line
 from lab.paint.sea import Sea
 from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool

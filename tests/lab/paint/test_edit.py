@@ -11,7 +11,7 @@ from lab.paint.edit.event import find_event, telling_moments
 from lab.paint.edit.timeline import HELD, RATE, SLOWER, hero_timeline
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
-from lab.paint.moves import on_the_way
+from lab.paint.scene.moves import on_the_way
 from lab.paint.video import contact_sheet, render_recording, telling_time
 from lab.preset.sections.video import CARGOES
 from solvers.machine.runtime import initialise

@@ -213,8 +213,8 @@ FAULTS = {
     ),
     "grains in it": (
         GRAINS,
-        "water: grains and water in one tank are not computed yet; leave out [grains] or [water], or give the water a "
-        "tank of its own, [tanks.NAME].",
+        "water: grains and water in one tank are not computed yet; leave out one of them, or give the water a tank of "
+        "its own, [tanks.NAME], or the grains a room of a hull, grains.room.",
     ),
     "no ship": (
         {"water__model": "linear"},
