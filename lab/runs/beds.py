@@ -163,7 +163,7 @@ def _poured(
     if how.surface == "undisturbed":
         beds = zip(poured, grains.radius, strict=True)
         poured = np.stack([levelled(bed, radius, pouring.outline, grains.fixed) for bed, radius in beds])
-    if not hold.open_edges:
+    if not hold.open_edges and how.outline != _corners(scene):  # else they cannot be beyond the walls
         for bed, radius in zip(poured, inner, strict=True):
             if not np.all(clear_of_walls(bed, hold.outline, FREE * radius)):
                 top = show(float((bed[:, 1] + radius).max() - hold.outline[:, 1].min()), "m")

@@ -17,7 +17,9 @@ END_WALLS = 0.25  # of b²/(12 ν): end-wall friction is explicit
 EVENED = 2.0 / 7.0  # of h/(δ c0): the diffusion of density is explicit, with 2 Σ V η = 7/h² over all neighbours
 SURFACE = 0.25  # of √((ρ_w + ρ_a) h³/(2 π σ)) (Brackbill, Kothe & Zemach 1992, eq. 61; Hu & Adams 2006, eq. 26)
 TRAVELLED = 0.02  # of the shortest period of the tank's motion
-SHARE_OF_COLLISION = 0.25  # of that of grains in a floating room: the longest step of water and room beside them
+# Of the shortest collision t_c of grains in a floating room: the longest step of water and room. A hull on the springs
+# of a floor layer of grains of its own mass has ω = π/t_c, and its step is stable up to 2/ω = 0.64 t_c.
+SHARE_OF_COLLISION = 0.5
 SLOW = 1e-9
 
 
@@ -69,7 +71,7 @@ def longest_pace(scene, step: float) -> int:
     """How many base steps of `step` (s) a step of the water may be long: beside grains in a ship, by its own bounds.
 
     Not where a ship takes its water's added mass on her own side, or takes long steps herself. Beside grains in a room
-    of a free body, which then has the water's steps, it is a quarter of their shortest collision at most.
+    of a free body, which then has the water's steps, it is half of their shortest collision at most.
     """
     if not (scene.fluid and scene.grains and (scene.vessels or scene.hold)):
         return 1

@@ -34,8 +34,9 @@ class OnBody:
 
         J_n = Σ Δt F(t_k) + L (F(t_n) − F(t_(n−1))),    t_(n−1) < t_k ≤ t_n,
 
-    of the second order. The second term does not add up: what body and grains have together, and what is `gathered`,
-    less L F(t_n), is kept to rounding.
+    of the second order; on springs that stand still it is that of leapfrog, every Δt F(t_n), as V is constant between.
+    The second term does not add up: what body and grains have together, and what is `gathered`, less L F(t_n), is kept
+    to rounding.
 
     `pieces` bear the load of the cargo: the walls of these tanks, the parts in them, and fixed grains. Their loads are
     in the body's axes, about the drawn origin. `noted` (W, numbers) is what grains need of the body in a step: how long
