@@ -90,7 +90,7 @@ def sections(loaded: LoadedPreset) -> Sections:
         ("Ship", _ship(preset, simulation)),
         ("Coarse grains", coarse.described(preset) if preset.grains else []),
         ("Axle", free.described(preset) if preset.axle else []),
-        ("Bodies", free.bodies(preset)),
+        ("Bodies", free.bodies(preset, scene)),
         ("Accuracy", accuracy),
         ("Accuracy of the water" if accuracy else "Accuracy", water.accuracy(preset) if preset.water else []),
         ("Step", _step(simulation)),

@@ -2,10 +2,13 @@
 
 from math import inf, pi, sqrt, tanh
 
+from lab.assembly.grains import cargo_of
 from lab.preset.schema import Preset
 from lab.preset.sections.axle import Axle
 from lab.preset.sections.water.bodies import draught, rooms_of
+from lab.preset.sections.water.floating import is_in
 from lab.preset.units import show
+from solvers.scene import Scene
 
 
 def described(preset: Preset) -> list[tuple[str, str]]:
@@ -53,16 +56,19 @@ def _slide(axle: Axle) -> str:
     return f"by {show(slide.amplitude, 'm')} with a period of {show(slide.period, 's')}"
 
 
-def bodies(preset: Preset) -> list[tuple[str, str]]:
+def bodies(preset: Preset, scene: Scene) -> list[tuple[str, str]]:
     """Rows on each body that floats and each hull, each a name and a text."""
     rows = []
     for name, part in preset.parts.items():
         free = part.solved(0, preset.thickness).free
         if free is not None:
             y, z = free.centre
-            deep = draught(part, free.mass / (preset.water.density * preset.thickness))
+            cargo = cargo_of(scene) if preset.grains and is_in(preset.grains.room, name) else 0.0
+            deep = draught(part, (free.mass + cargo) / (preset.water.density * preset.thickness))
             sinks = "sinks" if deep == inf else f"floats {show(deep, 'm')} deep, upright as drawn"
-            what = f"{free.mass:.4g} kg and {free.inertia:.4g} kg m^2 about [{show(y, 'm')}, {show(z, 'm')}]; {sinks}"
+            with_it = f", and {cargo:.4g} kg of grains" if cargo else ""
+            about = f"{free.inertia:.4g} kg m^2 about [{show(y, 'm')}, {show(z, 'm')}]"
+            what = f"{free.mass:.4g} kg and {about}{with_it}; {sinks}"
             rows.append((name, what + (f"; let go after {show(free.release, 's')}" if free.release else "")))
         if part.wall is not None:
             openings = [f"{hole} opens {_when(one.opens)}" for hole, one in part.openings.items()]

@@ -29,7 +29,11 @@ def described(preset: Preset, scene: Scene) -> Rows:
     small, large = 2 * grains.radius.min(), 2 * grains.radius.max()
     pair, wall = grains.interfaces
     return [
-        ("grains", f"{grains.count} in each, {show(small, 'm')} to {show(large, 'm')}{' in the first' * (worlds > 1)}"),
+        (
+            "grains",
+            f"{grains.count} in {preset.grains.room or 'each'}, {show(small, 'm')} to {show(large, 'm')}"
+            f"{' in the first' * (worlds > 1)}",
+        ),
         *(("shape", _shape(name, shape)) for name, shape in preset.shape_classes.items()),
         ("bed", _bed(preset)),
         ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
@@ -62,7 +66,8 @@ def _skin(skin: Skin) -> str:
 
 def _longer_steps(simulation: Simulation) -> Rows:
     """When steps are longer than the step that is told, which the run time takes no account of."""
-    if not (simulation.grains.has_multiples and simulation.carrier.has_multiples):
+    moved = simulation.grains, simulation.carrier, simulation.parts
+    if simulation.exchange_interval > 1 or not all(one.has_multiples for one in moved):
         return []
     calm = calm_speed(simulation.scene, float(simulation.largest_multiple))
     if not calm:
