@@ -12,7 +12,7 @@ from tests.oracles.water import GRAVITY
 SPACING, RATE = 0.05, 0.3  # m, rad/s
 
 
-@pytest.fixture(scope="module", params=[1, 7], ids=["one step", "seven steps of grains in one of the water"])
+@pytest.fixture(scope="module", params=[1, 5], ids=["one step", "five steps of grains in one of the water"])
 def floating(request):
     """A laden box that has just been let go: run, and its state then."""
     scene, places = laden()
@@ -39,6 +39,7 @@ def test_what_water_and_grains_lose_the_body_and_the_tank_gain(floating):
     run.restore(start)
     run.parts.bodies.velocity[2].from_numpy(np.full((1, 1), RATE))
     first, began, given, pushed, bodies = momentum(run), run.time, np.zeros(2), 0.0, run.parts.bodies
+    rolled = 0.0
     weight = GRAVITY * run.scene.thickness * run.water.particles.read(run.water.particles.mass)[0][0].sum()
     weight += GRAVITY * together(run)["mass"]
     step = run.exchange_interval * run.dt
@@ -54,9 +55,10 @@ def test_what_water_and_grains_lose_the_body_and_the_tank_gain(floating):
         gain = np.subtract([field.to_numpy()[0, 0] for field in bodies.velocity], before) / step
         solved = run.water.extrapolation.coupling.solution.to_numpy()[0, 0]
         np.testing.assert_allclose(gain, solved, atol=1e-10 * GRAVITY)
+        rolled = max(rolled, abs(bodies.place[2].to_numpy()[0, 0]))
     fell = np.array([0.0, weight * (run.time - began)])
     assert np.abs(momentum(run) - first + given + fell).max() < 1e-12 * pushed
-    assert abs(run.observe()["body_place"][0, 0, 2]) > 0.01  # rad, else nothing was tried
+    assert rolled > 0.01  # rad, else nothing was tried
 
 
 @pytest.mark.slow
