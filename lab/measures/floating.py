@@ -58,7 +58,7 @@ def draw(sheet: Sheet, recording: Recording, _values: Mapping[str, Value]) -> No
     """Heel and heave of the first bodies, and the water in the first rooms, against time."""
     time, series = recording.series["time"], recording.series
     bodies, rooms = recording.names["body"][:MOST_DRAWN], recording.names["room"][:MOST_DRAWN]
-    rooms = rooms if series["room_water"].any() else []
+    rooms = rooms if rooms and series["room_water"].any() else []
     panels = list(sheet.panels(heights=(1,) * (2 * bool(bodies) + bool(rooms)))[:, 0])
     last = panels[-1]
     if bodies:

@@ -16,6 +16,7 @@ from tests.oracles.recorded_water import pool, record_pool
 
 TIME = np.arange(101) / 10.0
 CORNERS = [["-100 mm", "100 mm"], ["100 mm", "100 mm"], ["100 mm", "300 mm"], ["-100 mm", "300 mm"]]
+OUTLINE = np.array([(-0.1, 0.1), (0.1, 0.1), (0.1, 0.3), (-0.1, 0.3)])
 HOLE = {"points": [["-50 mm", "110 mm"], ["50 mm", "110 mm"]], "opens": "2 s"}
 HULL = {"closed": True, "density": "900 kg/m^3", "points": CORNERS, "wall": "20 mm", "openings": {"a-hole": HOLE}}
 
@@ -27,7 +28,7 @@ def recorded(tmp_path):
     place = np.stack([0.0 * TIME, 0.2 - 0.003 * TIME, turn], axis=-1)
     series = {"body_place": place[:, None, None], "room_water": 0.4 * TIME[:, None, None]}
     frames = {"part_turn": np.zeros((2, 1, 1))}
-    preset, outline = pool(parts={"hull": HULL}), {"hull": np.array([(-0.1, 0.1), (0.1, 0.1), (0.1, 0.3), (-0.1, 0.3)])}
+    preset, outline = pool(parts={"hull": HULL}), {"hull": OUTLINE}
     with open_recording(record_pool(tmp_path / "run", TIME, series, frames, preset, parts=outline)) as recording:
         yield recording
 
@@ -40,6 +41,13 @@ def test_how_a_body_lies_and_what_is_in_her_is_told(recorded):
     assert values["room_water_hull_inside"].value == pytest.approx(4.0)
     (figure,) = (figure for name, figure in figures(recorded, values) if name == "floating")
     assert [axes.get_ylabel() for axes in figure.axes] == ["heel (deg)", "heave (mm)", "water in rooms (kg)"]
+
+
+def test_a_body_without_rooms_has_heel_and_heave_alone(tmp_path):
+    preset = pool(parts={"box": {"closed": True, "density": "500 kg/m^3", "points": CORNERS}})
+    with open_recording(record_pool(tmp_path / "run", TIME, {}, preset=preset, parts={"box": OUTLINE})) as recording:
+        (figure,) = (figure for name, figure in figures(recording, measure_all(recording)) if name == "floating")
+    assert [axes.get_ylabel() for axes in figure.axes] == ["heel (deg)", "heave (mm)"]
 
 
 def test_the_film_has_heel_and_water_beside_it_and_the_name_of_the_opening_in_it(recorded):
