@@ -1,4 +1,4 @@
-"""A part of the tank, larger, beside it: the surface where it flows most, or the gauge that is hit hardest."""
+"""A part of the tank, larger, beside it: what floats, the surface where it flows most, or the gauge hit hardest."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Inset:
         """The inset of this kind, None if there is none to show."""
         if what == "none" or "inset" not in layout.boxes:
             return None
-        middle = _hardest_hit(bed) if what == "impact" else None
+        middle = _hardest_hit(bed) if what == "impact" else _afloat(bed)
         middle = _liveliest(bed) if middle is None else middle
         if middle is None:
             return None
@@ -74,6 +74,15 @@ def _moved_inside(middle: np.ndarray, size: np.ndarray, outline: np.ndarray) -> 
     edge = OUTSIDE * size
     low, high = outline.min(axis=0) - edge + 0.5 * size, outline.max(axis=0) + edge - 0.5 * size
     return np.where(low <= high, np.clip(middle, low, high), 0.5 * (low + high))
+
+
+def _afloat(bed: Bed) -> np.ndarray | None:
+    """Where the first floating body is in the middle of its way, in the tank's axes; None if there is none."""
+    if not bed.footage.floating:
+        return None
+    name = bed.footage.floating[0]
+    line, number = bed.footage.parts[name], list(bed.footage.parts).index(name)
+    return np.median([bed.moved(line, number, frame).mean(axis=0) for _, frame in spread([bed], 25)], axis=0)
 
 
 def _liveliest(bed: Bed) -> np.ndarray | None:
