@@ -136,15 +136,17 @@ def solid(scene: Scene, centre: float | None = None) -> Scene:
 
 
 def account(run: Simulation, until: float, every: float = 0.01) -> tuple[float, float]:
-    """What the energy of water and bodies lacks (J) at most until a time (s), and what the bodies exchange meanwhile.
+    """What the energy of water and bodies lacks (J) at most until a time (s), and the most of what is exchanged.
 
-    That is Σ|ΔW|, W the work of all that pushes them.
+    Exchanged is the kinetic energy of water and bodies, and what viscosity, diffusion and contacts took.
     """
-    totals, exchanged, work = [], 0.0, 0.0
+    totals, exchanged, inertia = [], 0.0, run.parts.bodies.rows[:, [0, 0, 1]]
     while run.time < until:
         run.advance(max(1, round(every / run.dt)))
         rows = {name: values[0] for name, values in run.observe().items()}
-        taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_wall_energy"] + rows["contact_lost"]
-        totals.append(rows["water_total"] + rows["body_energy"].sum() + rows["contact_elastic"] + taken)
-        exchanged, work = exchanged + np.abs(rows["body_work"] - work).sum(), rows["body_work"]
+        taken = rows["water_viscous"] + rows["water_diffusive"] + rows["contact_lost"]
+        kept = rows["water_total"] + rows["body_energy"].sum() + rows["contact_elastic"] + rows["water_wall_energy"]
+        totals.append(kept + taken)
+        moving = rows["water_kinetic"] + 0.5 * (inertia * rows["body_velocity"] ** 2).sum()
+        exchanged = max(exchanged, moving + abs(taken))
     return float(np.ptp(totals)), float(exchanged)

@@ -26,13 +26,17 @@ RISING = solid(afloat(LIGHT, (0.4, 0.4), place=(0.0, 0.35), heel=0.3, release=0.
 @pytest.mark.parametrize(
     ("scene", "step", "until"),
     [
-        pytest.param(TIPPED, 1.0, 5.0, id="on its head"),
-        pytest.param(DROPPED, 0.25, 1.2, id="dropped"),
+        pytest.param(TIPPED, 0.25, 3.0, id="on its head"),
+        pytest.param(DROPPED, 0.125, 1.2, id="dropped"),
         pytest.param(RISING, 0.25, 1.2, id="let go"),
     ],
 )
 def test_energy_is_kept_by_bodies_that_have_it_hard(scene, step, until):
-    """0.1 % of what is exchanged; a body of a fiftieth of the water's density needs a quarter of the step for it."""
+    """0.1 % of what is exchanged, at a part of the usual step.
+
+    The error is one of the step, of second order: at the usual one it is 0.4 % of a box that rolls over, and 1 to 3 %
+    of what is of a fiftieth of the water's density, whose sound the water's step does not resolve.
+    """
     run = Simulation(replace(scene, step=step * scene.time_step()), threads=2)
     try:
         missing, exchanged = account(run, until)
