@@ -60,7 +60,7 @@ class MadeFootage:
         self.rail, self.protrudes, self.drive = None, bool(self.open_edges), ""
         self.radius, self.kind, self.kinds = np.zeros((1, 0)), np.zeros((1, 0), dtype=int), ["the rest"]
         self.shapes, self.shape_names, self.fixed, self.parts = None, ["disc"], np.zeros((0, 3)), {}
-        self.bodies, self.floating, self.rooms, self.hold = [], (), (), None
+        self.bodies, self.floating, self.rooms, self.hold = [], (), {}, None
         self.part, self.part_turn = np.zeros((len(self.time), 1, 0, 2)), np.zeros((len(self.time), 1, 0))
         if self.pose is None:
             self.pose = np.zeros((len(self.time), 3))
