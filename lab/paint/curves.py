@@ -116,7 +116,7 @@ def _of_rooms(beds: Sequence[Bed], hue: Mapping[Bed, tuple], series: Sequence[tu
         return None
     plot = Plot(("time (s)", "water (kg)"))
     if len(beds) == 1:
-        for k, (name, colour) in reversed(list(enumerate(zip(rooms, series, strict=False)))):
+        for (name, k), colour in reversed(list(zip(rooms.items(), series, strict=False))):
             plot.add(beds[0], _measured(beds[0], "room_water")[:, k], colour, name.partition(".")[2])
         plot.names.reverse()
     else:

@@ -84,9 +84,9 @@ class Footage:
         return self._preset.bodies
 
     @property
-    def rooms(self) -> tuple[str, ...]:
-        """The names of the rooms of hulls, if openings lead to any."""
-        return tuple(self._preset.rooms) if self._preset.openings else ()
+    def rooms(self) -> dict[str, int]:
+        """The rooms of hulls that openings lead to: their columns among all rooms, by name."""
+        return {name: k for k, name in enumerate(self._preset.rooms) if name in self._preset.open_rooms}
 
     @property
     def afloat(self) -> np.ndarray:

@@ -110,6 +110,17 @@ class WithBodies:
         return tuple(f"{name}.{room}" for name, part in self.parts.items() for room in rooms_of(part))
 
     @property
+    def open_rooms(self) -> set[str]:
+        """Those of the rooms to which openings lead."""
+        sides = (
+            (name, side)
+            for name, part in self.parts.items()
+            for one in part.openings.values()
+            for side in sides_of(part, one)
+        )
+        return {f"{name}.{side}" for name, side in sides if side}
+
+    @property
     def openings(self) -> tuple[str, ...]:
         """The openings of all hulls, by the hull's name and their own."""
         return tuple(f"{name}.{opening}" for name, part in self.parts.items() for opening in part.openings)
