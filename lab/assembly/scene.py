@@ -74,7 +74,11 @@ def vessels(preset: Preset) -> list[Vessel]:
     """The ship whose hold is the tank, if there is one. Raises LabError if she does not float."""
     if preset.ship is None:
         return []
-    return [make_vessel(preset.ship, preset.sea, preset.waves, preset.run.gravity, water_aboard(preset))]
+    vessel = make_vessel(preset.ship, preset.sea, preset.waves, preset.run.gravity, water_aboard(preset))
+    if preset.inflow:  # where it leads to a room she takes in water and goes on
+        inlets = {tuple(end) for inlet in preset.inflow.values() for end in inlet.points}
+        vessel = replace(vessel, sinks=True, openings=tuple(p for p in vessel.openings if tuple(p) not in inlets))
+    return [vessel]
 
 
 def largest_multiple(preset: Preset) -> int:

@@ -9,9 +9,11 @@ from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from lab.preset.sections.parts import parts_of
 from lab.preset.sections.water.bodies import depths_of, rooms_of
+from lab.preset.sections.water.inflow import inlets_of
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
 from lab.preset.sections.water.tanks import Pool, outline_at
 from solvers.fluid.given import Fluid, Water
+from solvers.fluid.given import particles as particles_of_water
 from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.flow import compressed, stirred, torsion, vortex_pressure, vortices
@@ -36,19 +38,33 @@ def fluid_of(preset: Preset) -> Fluid | None:
     if preset.water is None:
         return None
     in_tank = {pool.number: drops_of(preset, pool) for pool in preset.pools}
-    fills = tuple(len(in_tank.get(number, ())) for number in range(1 + len(preset.tanks)))
     water, start = preset.liquid, np.concatenate([*in_tank.values()])
-    if water.model == "sph":  # else particles are not compressed
+    if water.model == "sph" and len(start):  # else particles are not compressed
         share = np.concatenate([np.full(len(filling), _along(preset, number)) for number, filling in in_tank.items()])
         wet = ~start["gas"]
         water = replace(water, density=uncompressed(start[wet], water.density, share[wet]))
-    return Fluid(water, np.tile(start, (preset.run.repeats, 1)), fills if len(fills) > 1 else ())
+    waiting = {pool.number: waiting_in(preset, pool) for pool in preset.pools}
+    start = np.concatenate([np.concatenate([in_tank[number], waiting[number]]) for number in in_tank])
+    numbers = range(1 + len(preset.tanks))
+    fills, more = (tuple(len(one.get(number, ())) for number in numbers) for one in (in_tank, waiting))
+    fills = tuple(map(sum, zip(fills, more, strict=True))) if len(fills) > 1 else ()
+    entering = {"waiting": more, "inlets": inlets_of(preset)} if preset.inflow else {}
+    return Fluid(water, np.tile(start, (preset.run.repeats, 1)), fills, **entering)
+
+
+def waiting_in(preset: Preset, pool: Pool) -> np.ndarray:
+    """The particles (n,) that may enter a tank: so many as fill it, each a square, for now in its middle."""
+    found = particles_of_water(pool.places(preset.liquid.spacing))
+    found["volume"], found["position"] = preset.liquid.spacing**2, pool.polygon.mean(axis=0)
+    return found
 
 
 def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     """The particles (n,) of the water in a tank, by default the first. Raises LabError if none fits in."""
     pool = pool or preset.pools[0]
     water = preset.liquid
+    if not pool.depth:
+        return particles_of_water(0)
     parts = [part for part in parts_of(preset) if part.tank == pool.number]
     beside = parts if water.start == "packed" and any(map(is_slanted, parts)) and not water.periodic else []
     if (parts and not beside) or water.periodic:  # a lattice is cut off at bodies and upright plates, or goes on across
@@ -134,6 +150,8 @@ def water_aboard(preset: Preset) -> Body:
     """The water in a ship's tanks as if it were frozen, per metre of her length, in the hull's axes."""
     bodies = []
     for pool in preset.pools if preset.water and preset.ship else ():
+        if not pool.depth:
+            continue
         share = _along(preset, pool.number)
         area, centre, turning = moments(below(pool.polygon, pool.level))
         mass = share * preset.water.density * area
@@ -157,7 +175,7 @@ def most_drops(preset: Preset) -> int:
         return int(np.prod(np.ceil(size + 1.0)))
     size, count = preset.liquid.spacing, 0
     for pool in preset.pools:
-        count += int(np.ceil(np.ptp(pool.polygon[:, 0]) / size + 1.0) * np.ceil(pool.depth / size + 1.0))
+        count += int(np.ceil(np.ptp(pool.polygon[:, 0]) / size + 1.0) * np.ceil(pool.most / size + 1.0))
     return count
 
 

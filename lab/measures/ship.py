@@ -55,10 +55,12 @@ def moved_axis(recording: Recording, rows: slice | np.ndarray = slice(None)) -> 
 
 
 def losses(prefix: str, recording: Recording, found: Sequence[End | None]) -> dict[str, Value]:
-    """When ships (W,) capsized, and when those with openings flooded (s); the names begin with `prefix`."""
+    """When ships (W,) capsized, those with openings flooded, and those that take in water sank (s); the names begin with `prefix`."""
     kinds = {"capsized": "did not capsize"}
     if recording.preset.ship.flooding_points:
         kinds["flooded"] = "did not flood"
+    if recording.preset.inflow and not prefix:
+        kinds["sunk"] = "did not sink"
     times = {kind: [end.time if end and end.kind == kind else np.nan for end in found] for kind in kinds}
     return {f"{prefix}{kind}_at": over_worlds(times[kind], "s", missing=never) for kind, never in kinds.items()}
 

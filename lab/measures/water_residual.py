@@ -46,7 +46,8 @@ def residual(recording: Recording) -> np.ndarray:
     """Energy (T, W), J, that nothing accounts for."""
     series = recording.series
     gained = series["water_total"] - series["water_total"][0]
-    return gained + sum(series[name] for name in TAKEN) + series["water_wall_energy"] - series["water_work"]
+    given = series["water_work"] + (series["inflow_energy"] if recording.preset.inflow else 0.0)
+    return gained + sum(series[name] for name in TAKEN) + series["water_wall_energy"] - given
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

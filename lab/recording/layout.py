@@ -14,6 +14,7 @@ from lab.preset.kept.content import MATTERS, Content, parted
 from lab.recording import older
 from lab.recording.outlines import GROUP as SHAPES
 from solvers.fluid import quantities as water
+from solvers.fluid.inflow import quantities as inflow
 from solvers.fluid.phases import quantities as air
 from solvers.grains import quantities as grains
 from solvers.machine.quantity import OWNERS, Quantity
@@ -62,14 +63,19 @@ ATTEMPTS, RETRY_DELAY = 100, 0.02  # attempts to open a file that another proces
 
 
 def series_of(
-    afloat: bool, matters: Collection[str] = MATTERS, axled: bool = False, floating: bool = False
+    afloat: bool,
+    matters: Collection[str] = MATTERS,
+    axled: bool = False,
+    floating: bool = False,
+    leaking: bool = False,
 ) -> tuple[Quantity, ...]:
     """The quantities in the series of a run with these matters.
 
-    afloat: with those of a ship; axled: of an axle; floating: of bodies that float.
+    afloat: with those of a ship; axled: of an axle; floating: of bodies that float; leaking: of water that enters.
     """
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].SERIES)
-    further = (ship.SERIES, afloat), (tank.OF_AXLE, axled), (tank.OF_BODIES, floating)
+    entering = (*ship.OF_INFLOW, *inflow.SERIES), leaking
+    further = (ship.SERIES, afloat), (tank.OF_AXLE, axled), (tank.OF_BODIES, floating), entering
     return (TIME, *tank.SERIES, *of_matters, *(quantity for all_of, there in further if there for quantity in all_of))
 
 
@@ -82,7 +88,7 @@ def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS) -> 
 def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
     afloat, matters, names = bool(preset.ship), preset.matters, names_of(preset)
-    whole = series_of(afloat, matters, bool(preset.axle), bool(preset.bodies))
+    whole = series_of(afloat, matters, bool(preset.axle), bool(preset.bodies), bool(preset.inflow))
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
     tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
     return tables | ({"steering": STEERING} if steered else {})
@@ -95,7 +101,7 @@ def names_of(preset: "Preset | Content", parts: Iterable[str] = ()) -> dict[str,
     """
     pressure, level, force = parted(preset.gauges)
     gauges = {"gauge": [*pressure], "level": [*level], "edge": [*force]}
-    of_hulls = {"room": [*preset.rooms], "opening": [*preset.openings]}
+    of_hulls = {"room": [*preset.rooms], "opening": [*preset.openings], "inlet": [*preset.inflow]}
     return gauges | {"part": [*parts], "body": [*preset.bodies]} | of_hulls
 
 

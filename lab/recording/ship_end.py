@@ -1,11 +1,11 @@
-"""The loss of a ship: whether she capsizes or floods, when, at which roll, and how to report it."""
+"""The loss of a ship: whether she capsizes, floods or sinks, when, at which roll, and how to report it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-VERBS = {"capsized": "capsizes", "flooded": "floods"}
+VERBS = {"capsized": "capsizes", "flooded": "floods", "sunk": "sinks"}
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class End:
         return f"{VERBS[self.kind]} at {self.time:.4g} s, {abs(np.degrees(self.roll)):.3g} deg to {side}"
 
 
-def end_of(capsized: float, flooded: float, roll: float) -> End | None:
+def end_of(capsized: float, flooded: float, roll: float, sunk: float = -1.0) -> End | None:
     """The loss of a ship, None if she was not lost.
 
-    capsized, flooded: times (s), −1 if it did not happen; roll: since then (rad).
+    capsized, flooded, sunk: times (s), −1 if it did not happen; roll: since then (rad).
     """
-    times = {"capsized": float(capsized), "flooded": float(flooded)}
+    times = {"capsized": float(capsized), "flooded": float(flooded), "sunk": float(sunk)}
     lost = {kind: when for kind, when in times.items() if when >= 0.0}
     kind = min(lost, key=lost.get, default=None)
     return End(kind, lost[kind], float(roll)) if kind else None
@@ -39,7 +39,9 @@ def ends(series: Mapping[str, np.ndarray]) -> list[End | None]:
     if "capsized" not in series or not len(series["time"]):
         return [None] * series["pose"].shape[1]
     # The world of a lost ship stops, so the last sample has her roll at that time.
-    rows = zip(series["capsized"][-1], series["flooded"][-1], series["pose"][-1, :, 2], strict=True)
+    capsized, roll = series["capsized"][-1], series["pose"][-1, :, 2]
+    sunk = series["sunk"][-1] if "sunk" in series else [-1.0] * len(roll)
+    rows = zip(capsized, series["flooded"][-1], roll, sunk, strict=True)
     return [end_of(*row) for row in rows]
 
 

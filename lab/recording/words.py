@@ -9,6 +9,7 @@ COUNTED = {  # what each axis counts, and the preset key that sets its size
     "body": "floating bodies (parts.NAME.density)",
     "room": "rooms of hulls (parts.NAME.wall)",
     "opening": "openings of hulls (parts.NAME.openings.NAME)",
+    "inlet": "openings of the ship (inflow.NAME)",
     "grain": "grains (grains.count)",
     "water_particle": "particles of water (water.spacing)",
     "air_particle": "particles of air (water.spacing)",
@@ -41,6 +42,8 @@ def recorded_by(name: object) -> str:
         return "; a preset with a table [axle] records it."
     if name in _names(series_of(afloat=False, floating=True)):
         return "; a preset with a part that floats (parts.NAME.density) records it."
+    if name in _names(series_of(afloat=False, leaking=True)):
+        return "; a preset with an opening to a room (inflow.NAME) records it."
     if name in _names(frames_of()):
         return "; it is in the frames (record.picture_rate)."
     return "; nothing records that."

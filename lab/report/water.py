@@ -43,6 +43,10 @@ def described(preset: Preset, scene: Scene) -> Rows:
         rows.append(("flow", _flow(preset)))
     if water.periodic:
         rows.append(("periodic", f"space repeats itself along {' and '.join(water.periodic)}"))
+    for name, inlet in preset.inflow.items():
+        ends = " and ".join(f"[{show(y, 'm')}, {show(z, 'm')}]" for y, z in inlet.points)
+        along = f", {show(inlet.length, 'm')} long" if inlet.length else ""
+        rows.append((f"inflow by {name}", f"into {inlet.room} between {ends}{along}, C_d {inlet.discharge:g}"))
     if preset.gauges:
         kinds = zip(("pressure", "level", "force"), (pressure, level, force), strict=True)
         names = [f"{name} of {kind}" for kind, gauges in kinds for name in gauges]
@@ -57,7 +61,7 @@ def compression(preset: Preset, scene: Scene) -> Rows:
     """
     fluid = scene.fluid
     dense = fluid.water.density * (1.0 + fluid.particles["deviation"][0, : fluid.wet])
-    if not fluid.moved or np.ptp(dense) < EVEN * fluid.water.density:
+    if fluid.inlets or not fluid.moved or np.ptp(dense) < EVEN * fluid.water.density:
         return []
     low, high, mean = (show(float(one), "kg/m^3") for one in (dense.min(), dense.max(), preset.water.density))
     text = f"{low} to {high} as it starts, by its own pressure; {mean} in the mean: level and mass are exact"

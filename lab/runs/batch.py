@@ -26,6 +26,7 @@ from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
+from lab.recording.ship_end import VERBS
 from lab.runs.beds import settled, settling
 from lab.runs.checkpoint import Checkpoint, remove_checkpoint
 from solvers.machine.errors import BadState
@@ -243,10 +244,10 @@ class Batch:
         return {"pose": rows["pose"], **self._simulation.placed(), **self._simulation.snapshot()}
 
     def _end_lost(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
-        """End the runs whose ships have all capsized or flooded, with a last frame; the others continue."""
+        """End the runs whose ships have all capsized, flooded or sunk, with a last frame; the others continue."""
         if "capsized" not in rows:
             return
-        lost = np.maximum(rows["capsized"], rows["flooded"]) >= 0.0
+        lost = np.any([rows[kind] >= 0.0 for kind in VERBS if kind in rows], axis=0)
         over = [bool(lost[worlds].all()) for worlds in self._worlds()]
         slices, now = list(self._worlds()), self._simulation.time
         frame = {} if pictured or not any(over) else self._frame(rows)

@@ -31,6 +31,7 @@ def quantities_of(matter, time: float) -> dict[str, np.ndarray]:
         "water_escaped": sums["escaped"],
         **matter.gauges.read_and_reset(),
         **matter.edges.read_and_reset(),
+        **(matter.inflow.read(thick) if matter.inflow else {}),
         **matter.bodies.read_and_reset(time, thick, by_parts),
     }
     return rows

@@ -18,10 +18,10 @@ LIFTED = 'water.shifting = "delta-plus" lifts water below a surface; take "delta
 def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
     """What `refuse_state` asks of the particles in a world of a `solvers.fluid.matter.WaterMatter` at `time` (s)."""
     p = matter.particles
-    found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation, p.eigenvalue)
+    found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation, p.eigenvalue, p.mass)
     velocity = matter.diagnostics.relative(time, found[0:2], found[2:4], found[4:6], matter.gas)[world]
     place, speed = np.stack(found[0:2], axis=-1)[world], np.linalg.norm(velocity, axis=1)
-    return {
+    told = {
         "place": place,
         "speed": np.where(outside(place, matter.order.grid.watched), 0.0, speed),
         **{
@@ -29,6 +29,8 @@ def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
             for name, values in (("deviation", found[6]), ("eigenvalue", found[7]), ("gas", matter.gas))
         },
     }
+    there = np.isfinite(found[8][world])  # without those that have not entered
+    return {name: values[there] for name, values in told.items()}
 
 
 def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, sound: float) -> None:
@@ -67,6 +69,7 @@ def check_water(
             w, f"particle {int(rows['water_escaped'][w])} of the water left the tank by t = {time:.4g} s; {REMEDY}."
         )
     exchanged = sum(np.abs(rows[f"water_{name}"]) for name in ("work", "viscous", "diffusive", "kinetic"))
+    exchanged = exchanged + np.abs(rows.get("inflow_energy", 0.0))
     for w in np.flatnonzero(residual(rows, start) > CREATED * exchanged + 1e-3 * np.abs(start) + least):
         remedy = LIFTED if lifts else REMEDY
         raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {remedy}.")
@@ -83,9 +86,9 @@ def outside(place: np.ndarray, box: tuple[np.ndarray, np.ndarray] | None) -> np.
 
 
 def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarray:
-    """Energy (W,) J that nothing accounts for: gain, losses and what walls store, less their work."""
+    """Energy (W,) J that nothing accounts for: gain, losses and what walls store, less their work and what enters."""
     taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_wall_energy"]
-    return rows["water_total"] + taken - rows["water_work"] - start
+    return rows["water_total"] + taken - rows["water_work"] - rows.get("inflow_energy", 0.0) - start
 
 
 def refuse_reduced(scene) -> None:

@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
+from solvers.fluid.inflow.inlet import Inlet
 from solvers.machine.marks import Doc, EachWorld, Interval, NotOfBed, Unit
 from solvers.tank.given import Given
 
@@ -157,7 +158,8 @@ class Fluid(Given):
     Those of air come last. `in_tanks`: how many particles are in each tank of a world, by their numbers one after the
     other; (): all are in the first. Fluid of different tanks never meets, though they may overlap in the plane. A step
     of the fluid is `substeps` steps of the scene, more than 1 in ships alone, and while its air is soft
-    `soft_multiple`.
+    `soft_multiple`. Of each tank the last ones, so many as are `waiting`, are not there at the start: they enter
+    through the `inlets`.
     """
 
     simple: ClassVar = False  # its kernels are long
@@ -167,6 +169,8 @@ class Fluid(Given):
     in_tanks: tuple[int, ...] = ()
     substeps: Annotated[int, NotOfBed()] = 1
     soft_multiple: Annotated[int, NotOfBed()] = 1
+    waiting: tuple[int, ...] = ()
+    inlets: Annotated[tuple[Inlet, ...], NotOfBed()] = ()
 
     @property
     def worlds(self) -> int:
@@ -177,6 +181,14 @@ class Fluid(Given):
     def count(self) -> int:
         """Number of particles in a world."""
         return self.particles.shape[1]
+
+    @property
+    def present(self) -> np.ndarray:
+        """Which particles (n,) are there at the start."""
+        found, fills = np.ones(self.count, dtype=bool), self.fills(len(self.waiting))
+        for end, wait in zip(np.cumsum(fills), self.waiting, strict=False):
+            found[end - wait : end] = False
+        return found
 
     @property
     def wet(self) -> int:

@@ -14,6 +14,7 @@ from solvers.fluid.damping import DampingZones
 from solvers.fluid.diagnostics import Diagnostics, Pool
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import Fluid
+from solvers.fluid.inflow.inflow import Inflow
 from solvers.fluid.lists.grid import grid_round
 from solvers.fluid.lists.neighbours import FluidContext, Lists
 from solvers.fluid.lists.order import Order, Tanks
@@ -81,6 +82,7 @@ class WaterMatter(Matter):
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
         self.has_multiples = self.sound_switch.has_multiples
         self.continuity, self.vent = Continuity(arrays, shared, self.forces), OutflowVent(arrays, shared, water.air)
+        self.inflow = Inflow(arrays, scene, shared, context.carrier) if fluid.inlets else None
         self.damping = DampingZones(arrays, water, p, units)
         self.mover = Mover(arrays, shared, self.extrapolation, self.vent, self.forces.voids, substeps, self.damping)
         probes = [slots[slot] + p.fluid_blocks * lanes for slot in layers.probes]
@@ -96,7 +98,8 @@ class WaterMatter(Matter):
         self.between = (*substeps.first(rest), *substeps.last(passage))
         correction = [DivergenceCorrection(arrays, shared, layers, slots).correct] if self.continuity.corrects else []
         acts = self.mover.kick, *correction, self.continuity.continuity_pass, self.finish
-        self.after = substeps.last(Phase(act, units) for act in acts)
+        entering = [Phase(self.inflow.flow)] if self.inflow else []
+        self.after = substeps.last([*(Phase(act, units) for act in acts), *entering])
 
     def _before(self) -> tuple[Phase, ...]:
         return (
@@ -129,6 +132,8 @@ class WaterMatter(Matter):
         self.substeps.note(w, kick)
         if ti.static(self.bodies.count > 0):
             self.bodies.note(w, t, dt)
+        if ti.static(self.lists.leaks):
+            self.inflow.note(w, t)
 
     @ti.func
     def note_passage(self, w, t, kick, dt):
@@ -200,13 +205,15 @@ class WaterMatter(Matter):
         """The water of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
         p = self.particles
         y, z, mass, volume = p.read(*p.place, p.mass, p.volume)
-        return [frozen(*one) for one in zip(y, z, per_slab(self.scene) * mass, volume, strict=True)]
+        there, mass = np.isfinite(mass), per_slab(self.scene) * mass
+        columns = zip(y, z, mass, volume, there, strict=True)
+        return [frozen(*(one[inside] for one in of_world)) for *of_world, inside in columns]
 
     def place(self, position: np.ndarray | None) -> None:
         """Place the particles as the scene says, and the wall particles; all that was noted is forgotten."""
         p = self.particles
         self.sound_switch.use(False, self.scene.gravity)
-        p.put(self.fluid.particles, self.water)
+        p.put(self.fluid.particles, self.water, self.fluid.present)
         p.put_walls(*self.wall_points, self.bodies.solids)
         lists, sums = self.lists, (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind)
         for field in (*sums, lists.last, lists.skin):
@@ -220,6 +227,7 @@ class WaterMatter(Matter):
             self.poses,
             self.extrapolation.coupling,
             self.damping,
+            *([self.inflow] if self.inflow else []),
         ):
             noted.forget()
         self.start[:] = np.nan

@@ -5,6 +5,7 @@ import taichi as ti
 
 from solvers.fluid.given import Air, Water
 from solvers.fluid.walls.end_walls import MODES
+from solvers.machine.memory import KINDS
 from solvers.machine.state import Axis, State, roomy
 from solvers.machine.units import Units
 from solvers.space.axes import named
@@ -122,24 +123,28 @@ class Particles:
         """All arrays that a step changes."""
         return [*self.moved, *self.acceleration, self.used]
 
-    def put(self, start: np.ndarray, water: Water) -> None:
-        """Fill the blocks in the order of the numbers with particles (W, n) as they `start` (`given.PARTICLE`)."""
+    def put(self, start: np.ndarray, water: Water, present: np.ndarray) -> None:
+        """Fill the blocks in the order of the numbers with those particles (W, n) that are `present` (n,) at the start.
+
+        Each is as it starts (`given.PARTICLE`).
+        """
+        number, start = np.flatnonzero(present), start[:, present]
         density = water.density
         if self.two:
             density = np.where(start["gas"], water.air.density, water.density)
         mass = density * (1.0 + start["deviation"]) * start["volume"]
         along = [start[name][..., axis] for name in ("position", "velocity") for axis in range(start[name].shape[-1])]
-        columns = [*along, start["deviation"], mass, np.broadcast_to(np.arange(self.count), mass.shape)]
+        columns = [*along, start["deviation"], mass, np.broadcast_to(number, mass.shape)]
         columns += [*([start["gas"]] if self.two else []), start["volume"]]
         fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, *([0.0] if self.two else []), 0.0]
         for field, values, fill in zip([*self.given, self.volume], columns, fills, strict=True):
             whole = self.by_world(field.to_numpy())
             whole[:, : self.fluid_blocks * self.lanes] = fill
-            whole[:, : self.count] = values
+            whole[:, : len(number)] = values
             field.from_numpy(whole.reshape(-1, self.lanes))
         for field in (*self.acceleration, *(field for mode in self.end_wall_modes for field in mode)):
             field.fill(0.0)
-        self.used.fill(-(-self.count // self.lanes))
+        self.used.fill(-(-len(number) // self.lanes))
 
     def put_walls(self, slots: np.ndarray, blocks: np.ndarray, volume: np.ndarray, firm: np.ndarray, solids) -> None:
         """Place the walls of tanks in these `slots` of their `blocks`, and after them those of the `solids` in them."""
@@ -159,11 +164,14 @@ class Particles:
         return values.reshape(self.worlds, self.stride * self.lanes)
 
     def read(self, *fields: ti.Field) -> list[np.ndarray]:
-        """Values (W, n) of these fields in the order of the particles' numbers."""
-        number = self.by_world(self.number.to_numpy())[:, : self.fluid_blocks * self.lanes]
-        order = np.argsort(np.where(number < 0, self.count, number), axis=1, kind="stable")[:, : self.count]
+        """Values (W, n) of these fields in the order of the particles' numbers; NaN of those that have not entered."""
         wet = slice(0, self.fluid_blocks * self.lanes)
-        return [np.take_along_axis(self.by_world(field.to_numpy())[:, wet], order, axis=1) for field in fields]
+        number = self.by_world(self.number.to_numpy())[:, wet]
+        worlds, slots = np.nonzero(number != UNUSED)
+        found = [np.full((self.worlds, self.count), np.nan, KINDS[field.dtype]) for field in fields]
+        for rows, field in zip(found, fields, strict=True):
+            rows[worlds, number[worlds, slots]] = self.by_world(field.to_numpy())[:, wet][worlds, slots]
+        return found
 
     # Lanes are gone through in loops, which LLVM unrolls: 16 accesses for each load, written out, would make Taichi's
     # compilation, whose time grows as the square of a kernel's length, take more than twice as long.

@@ -19,6 +19,7 @@ OWNERS = {
     "body": ("world", "body"),
     "room": ("world", "room"),
     "opening": ("world", "opening"),
+    "inlet": ("world", "inlet"),
     "water_particle": ("world", "water_particle"),
     "air_particle": ("world", "air_particle"),
     "gauge": ("world", "gauge"),

@@ -42,6 +42,9 @@ class Ships(Rates):
         # Times (s) of capsize and of flooding, or −1; the cargo's work on the ship (J/m)
         self.capsized = self._table("capsized", np.full(worlds, -1.0))
         self.flooded = self._table("flooded", np.full(worlds, -1.0))
+        self.sinks = any(vessel.sinks for vessel in self.vessels)
+        if self.sinks:
+            self.sunk = self._table("sunk", np.full(worlds, -1.0))
         self._declare("given", "pose", "velocity", "last")  # of P, with its last acceleration
 
     def bear(self, loads: Sequence[Load]) -> None:
@@ -71,6 +74,8 @@ class Ships(Rates):
         self.heeled.from_numpy(self._typed(heeled))
         self.capsized.fill(-1.0)
         self.flooded.fill(-1.0)
+        if self.sinks:
+            self.sunk.fill(-1.0)
         self.given.fill(0.0)
         self.done.fill(0)
         self.state.fill(0.0)
@@ -84,11 +89,13 @@ class Ships(Rates):
     def account(self, rows: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Work done so far, `ship_works` (W, 4) J/m: of waves, against radiation, against viscosity, of the cargo.
 
-        And the times (s) at which a ship `capsized` and `flooded`, (W,) each, −1 if that has not happened.
+        And the times (s) at which a ship `capsized`, `flooded` and, where it may, `sunk`, (W,) each, −1 if that has not
+        happened.
         """
         works = self.state.to_numpy()[:, -WORKS:]
         given = self.given.to_numpy()[:, :1]
         ends = {"capsized": self.capsized.to_numpy(), "flooded": self.flooded.to_numpy()}
+        ends |= {"sunk": self.sunk.to_numpy()} if self.sinks else {}
         return {"ship_works": np.hstack([works, given]).astype(float), **ends}
 
     @ti.func
@@ -114,8 +121,21 @@ class Ships(Rates):
 
     @ti.func
     def goes_on(self, w):
-        """Whether a ship goes on: it has neither capsized nor flooded."""
-        return self.capsized[w] < 0.0 and self.flooded[w] < 0.0
+        """Whether a ship goes on: it has neither capsized nor flooded nor sunk."""
+        goes = self.capsized[w] < 0.0 and self.flooded[w] < 0.0
+        if ti.static(self.sinks):
+            goes = goes and self.sunk[w] < 0.0
+        return goes
+
+    @ti.func
+    def look_whether_lost(self, w, pose, t):
+        """Note when an opening is under water, or the whole ship."""
+        if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
+            if self.hulls.floods(w, pose, t):
+                self.flooded[w] = t
+        if ti.static(self.sinks):  # noqa: SIM102 (compiled only for ships that take in water)
+            if self.hulls.is_under(w, pose, t):
+                self.sunk[w] = t
 
     @ti.func
     def follow(self, w, time, kick, dt):

@@ -35,6 +35,8 @@ def bolted(*bodies: Body) -> Body:
     if len(bodies) < 2:
         return bodies[0] if bodies else NOTHING
     mass = np.array([body.mass for body in bodies])
+    if not mass.any():
+        return NOTHING
     centres = np.array([body.centre for body in bodies])
     centre = mass @ centres / mass.sum()
     apart = ((centres - centre) ** 2).sum(axis=1)
@@ -48,6 +50,8 @@ def frozen(y: np.ndarray, z: np.ndarray, mass: np.ndarray, volume: np.ndarray) -
     A square of the area V turns about its middle with m V/6.
     """
     total = mass.sum()
+    if not total:
+        return NOTHING
     centre = float(mass @ y / total), float(mass @ z / total)
     inertia = mass @ ((y - centre[0]) ** 2 + (z - centre[1]) ** 2 + volume / 6.0)
     return Body(float(total), centre, float(inertia))

@@ -58,7 +58,7 @@ class Substeps:
                     rebuilds = 1
             self.rebuilding[w] = rebuilds
         if rebuilds > 0:
-            self.lists.order.sort_world(w)
+            self.lists.sort(w)
 
     @ti.func
     def rebuilds(self, u):

@@ -52,7 +52,9 @@ def _drops(preset: Preset, volume: np.ndarray) -> dict[int, slice]:
     if not preset.tanks:
         return {0: slice(0, volume.shape[1])}
     filled = preset.pools
-    areas = np.cumsum([area_of(below(pool.polygon, pool.level)) for pool in filled])
+    size = preset.liquid.spacing
+    areas = [area_of(below(pool.polygon, pool.level)) if pool.depth else 0.0 for pool in filled]
+    areas = np.cumsum([area + pool.places(size) * size**2 for area, pool in zip(areas, filled, strict=True)])
     share = np.cumsum(volume[0]) / volume[0].sum() * areas[-1]
     ends = np.searchsorted(share, areas * (1.0 - 1e-9)) + 1
     starts = [0, *ends[:-1]]

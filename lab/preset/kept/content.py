@@ -29,6 +29,7 @@ class Content:
     bodies: tuple[str, ...]
     rooms: tuple[str, ...]
     openings: tuple[str, ...]
+    inflow: tuple[str, ...]
     repeats: int
 
 

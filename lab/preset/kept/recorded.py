@@ -25,7 +25,7 @@ def content(table: object) -> Content:
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))
     openings = (f"{name}.{opening}" for name, part in parts for opening in part.get("openings") or ())
     own = has["material"], has["ship"], has["axle"], gauges
-    return Content(matters, *own, bodies, tuple(rooms), tuple(openings), repeats)
+    return Content(matters, *own, bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ())), repeats)
 
 
 def _check(taken: Taken, value: object, key: str) -> None:

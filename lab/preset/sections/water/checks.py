@@ -95,6 +95,7 @@ def given_of(water: Water) -> dict[str, object]:
 def _check_given(preset: Whole) -> None:
     """Raise LabError unless it is said where the water is."""
     given, elsewhere = given_of(preset.water), any(tank.depth is not None for tank in preset.tanks.values())
+    elsewhere = elsewhere or bool(preset.inflow)
     if len(given) > 1 or not (given or elsewhere):
         got = " and ".join(given) or "none"
         raise LabError(f"water.depth: give exactly one of depth, region and radius (got {got}).")
@@ -182,7 +183,7 @@ def _check_spacing(preset: Whole) -> None:
 def _check_sound(preset: Whole) -> None:
     """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
     borne = preset.water.radius is None and "z" not in (preset.water.periodic or "")
-    head = borne * preset.run.gravity * max(pool.depth for pool in preset.pools)
+    head = borne * preset.run.gravity * max(pool.most for pool in preset.pools)
     sound = preset.liquid.sound_speed
     if head > COMPRESSED * sound**2:
         least = show((head / COMPRESSED) ** 0.5, "m/s")

@@ -141,8 +141,8 @@ def bounds(preset: Wet) -> tuple[np.ndarray, float]:
 
 
 def depth(preset: Wet) -> float:
-    """Depth (m) of the first tank's water, or height of its region."""
-    return preset.pools[0].depth
+    """Depth (m) of the first tank's water, or height of its region; of a room that is empty at first its height."""
+    return preset.pools[0].depth or preset.pools[0].most
 
 
 def layers(preset: Wet) -> int:
@@ -161,15 +161,17 @@ def expected_speed(preset: Wet) -> float:
     own flow at first, of the tank.
 
     H is the height of the water's surface over the tank's lowest point, that of the deepest tank. Water in a room of a
-    hull is as a column that may collapse.
+    hull, and what may enter a ship's, is as a column that may collapse.
     """
     height = max(pool.depth for pool in preset.pools)
     if preset.water.shape is not None:
         height = max(height, bounds(preset)[1] - min(z for _, z in preset.tank.corners))
     wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.shape is None else FRONT)
     parts = preset.parts.values()
-    rooms = (FRONT * sqrt(preset.run.gravity * room.depth) for part in parts for room in part.rooms.values())
-    return max([wave, flow_speed(preset), tank_speed(preset), *(part.fastest() for part in parts), *rooms])
+    rooms = [room.depth for part in parts for room in part.rooms.values()]
+    rooms += [pool.most for pool in preset.pools if pool.open]
+    falls = (FRONT * sqrt(preset.run.gravity * high) for high in rooms)
+    return max([wave, flow_speed(preset), tank_speed(preset), *(part.fastest() for part in parts), *falls])
 
 
 def centre_of_flow(preset: Wet) -> tuple[float, float]:

@@ -9,8 +9,10 @@ from lab.base.errors import LabError
 from lab.preset.outline import stands_out
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.tank import FurtherTank, Tank, check_tank
+from lab.preset.sections.water.inflow import Inlet, rooms_with_inflow
 from lab.preset.sections.water.section import Water
 from lab.preset.units import show
+from solvers.fluid.start.packing import area_of, below
 from solvers.tank import tank as solved
 
 MOST_TANKS = 20
@@ -24,35 +26,53 @@ class Tanked(Protocol):
     ship: Ship | None
     water: Water | None
     grains: object | None
+    inflow: dict[str, Inlet]
 
 
 @dataclass(frozen=True, eq=False)
 class Pool:
-    """The water of the tank of this `number`: the polygon (m, 2) m that it fills up to a `level` (m)."""
+    """The water of the tank of this `number`: the polygon (m, 2) m that it fills up to a `level` (m).
+
+    More may enter one that is `open`, which may be empty at the start.
+    """
 
     number: int
     polygon: np.ndarray
     level: float
+    open: bool = False
 
     @property
     def depth(self) -> float:
         """Depth (m) of the water, or height of its region or drop."""
         return self.level - float(self.polygon[:, 1].min())
 
+    @property
+    def most(self) -> float:
+        """Largest depth (m) that it may have."""
+        return float(np.ptp(self.polygon[:, 1])) if self.open else self.depth
+
+    def places(self, spacing: float) -> int:
+        """How many particles, a `spacing` (m) apart, may still enter."""
+        if not self.open:
+            return 0
+        filled = area_of(below(self.polygon, self.level)) if self.depth > 0.0 else 0.0
+        return int((area_of(self.polygon) - filled) / spacing**2)
+
 
 def pools(preset: Tanked) -> tuple[Pool, ...]:
     """The water of each tank that has some, in the axes of the first tank; the first tank's is first."""
-    water, outline, found = preset.water, np.array(preset.tank.corners), []
+    water, outline, found, entered = preset.water, np.array(preset.tank.corners), [], rooms_with_inflow(preset)
     if water is None:
         return ()
     if water.shape is not None:
         found.append(Pool(0, water.shape, float(water.shape[:, 1].max())))
-    elif water.depth is not None:
-        found.append(Pool(0, outline, float(outline[:, 1].min()) + water.depth))
+    elif water.depth is not None or 0 in entered:
+        found.append(Pool(0, outline, float(outline[:, 1].min()) + (water.depth or 0.0), 0 in entered))
     for number, tank in enumerate(preset.tanks.values(), start=1):
-        if tank.depth is not None:
+        if tank.depth is not None or number in entered:
             outline = outline_of(preset, tank)
-            found.append(Pool(number, outline, float(outline[:, 1].min()) + tank.depth))
+            level = float(outline[:, 1].min()) + (tank.depth or 0.0)
+            found.append(Pool(number, outline, level, number in entered))
     return tuple(found)
 
 

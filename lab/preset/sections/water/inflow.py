@@ -1,0 +1,110 @@
+"""Openings of a ship by which water enters a room of hers, as a preset gives them, and their checks."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Protocol
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.outline import TOUCHING, depth_inside
+from lab.preset.sections.ship import Ship
+from lab.preset.sections.tank import FurtherTank, Tank
+from lab.preset.sections.water.section import Water
+from lab.preset.units import show
+from solvers.fluid.inflow import inlet as solved
+from solvers.machine.marks import Doc, Interval, Unit
+
+FIRST = "tank"  # the name of the first tank
+
+Ends = Annotated[tuple[tuple[float, float], ...], Unit("m")]
+Length = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
+
+
+@dataclass(frozen=True)
+class Inlet:
+    """An opening in the hull of a ship, such as a hatch or a port, that leads to a room: water enters where it is under.
+
+    The flow is Q = C_d ∫ √(2 g Δh) dA (`docs/physics/flooding-ships.md`). The room is [tank] or one of [tanks]; it may
+    be empty at the start. It must not hold grains, whose holds flood at `ship.openings`.
+    """
+
+    points: Annotated[Ends, Doc("Its two ends in the hull's axes, y and z each.")]
+    room: Annotated[str, Doc('The room that it leads to: "tank", or the name of one of [tanks].')] = FIRST
+    length: Annotated[Length | None, Doc("Its length along the ship; without it that of the room.")] = None
+    discharge: Annotated[float, Interval(gt=0, le=1), Doc("Discharge coefficient C_d.")] = 0.6
+
+
+class Leaking(Protocol):
+    """The sections of a preset that its openings follow from."""
+
+    tank: Tank
+    tanks: dict[str, FurtherTank]
+    ship: Ship | None
+    water: Water | None
+    grains: object | None
+    inflow: dict[str, Inlet]
+
+
+def rooms_with_inflow(preset: Leaking) -> set[int]:
+    """The numbers of the tanks that water may enter."""
+    names = [FIRST, *preset.tanks]
+    return {names.index(inlet.room) for inlet in preset.inflow.values() if inlet.room in names}
+
+
+def inlets_of(preset: Leaking) -> tuple[solved.Inlet, ...]:
+    """The openings as the solver takes them."""
+    found, names = [], [FIRST, *preset.tanks]
+    for inlet in preset.inflow.values():
+        number = names.index(inlet.room)
+        along = _length_of_room(preset, number)
+        ends = tuple(tuple(float(x) for x in np.subtract(end, preset.ship.hold)) for end in inlet.points)
+        found.append(solved.Inlet(ends, number, along, (inlet.length or along) / along, inlet.discharge))
+    return tuple(found)
+
+
+def _length_of_room(preset: Leaking, number: int) -> float:
+    """The length (m) of a tank along the ship."""
+    return [preset.tank, *preset.tanks.values()][number].length or preset.ship.length or 1.0
+
+
+def check_inflow(preset: Leaking) -> None:
+    """Raise LabError, one sentence, for an opening that cannot be."""
+    if not preset.inflow:
+        return
+    if preset.ship is None:
+        raise LabError("inflow: openings are those of a ship; add a table [ship], or leave them out.")
+    if preset.water is not None and preset.water.model != "sph":
+        raise LabError(f'inflow: water enters as particles; take water.model = "sph" for "{preset.water.model}".')
+    for name, inlet in preset.inflow.items():
+        for key, fault in _faults(preset, inlet):
+            raise LabError(f"inflow.{name}.{key}: {fault}.")
+
+
+def _faults(preset: Leaking, inlet: Inlet) -> Iterator[tuple[str, str]]:
+    """The keys at fault of an opening, and why."""
+    if len(inlet.points) != 2:
+        yield "points", f"an opening has two ends (got {len(inlet.points)})"
+    one, two = inlet.points
+    if one == two:
+        yield "points", "its two ends are the same point; an opening needs a width"
+    names = [FIRST, *preset.tanks]
+    if inlet.room not in names:
+        yield "room", f'there is no tank "{inlet.room}"; take {" or ".join(names)}'
+    if inlet.room == FIRST and preset.grains is not None:
+        yield (
+            "room",
+            "this hold has grains, and water among them is not computed; take a tank without, or give the place as "
+            "one of ship.openings, where she floods",
+        )
+    corners = preset.ship.corners
+    slack, waterline = TOUCHING * float(np.ptp(corners, axis=0).max()), corners[:, 1].min() + preset.ship.draught
+    for y, z in inlet.points:
+        place = f"[{show(y, 'm')}, {show(z, 'm')}]"
+        if depth_inside(np.array([y, z]), corners) < -slack:
+            yield "points", f"{place} is outside of the hull; lay it on her outline or within"
+        if z <= waterline:
+            yield "points", f"{place} is under water at rest; it must be above {show(float(waterline), 'm')}"
+    along = _length_of_room(preset, names.index(inlet.room))
+    if inlet.length is not None and inlet.length > along:
+        yield "length", f"it is longer than the room, {show(along, 'm')}; make it shorter"
