@@ -55,7 +55,10 @@ def moved_axis(recording: Recording, rows: slice | np.ndarray = slice(None)) -> 
 
 
 def losses(prefix: str, recording: Recording, found: Sequence[End | None]) -> dict[str, Value]:
-    """When ships (W,) capsized, those with openings flooded, and those that take in water sank (s); the names begin with `prefix`."""
+    """When ships (W,) capsized, flooded if they have openings, or sank if they take in water (s).
+
+    The names begin with `prefix`.
+    """
     kinds = {"capsized": "did not capsize"}
     if recording.preset.ship.flooding_points:
         kinds["flooded"] = "did not flood"

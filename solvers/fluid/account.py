@@ -10,7 +10,7 @@ def quantities_of(matter, time: float) -> dict[str, np.ndarray]:
     centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
     now = [field.to_numpy() for field in matter.diagnostics.now]
     down = np.stack(now[3:5], axis=1) / max(matter.scene.gravity, 1e-300)
-    potential = mass * matter.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
+    potential = sums["mass"] * matter.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
     potential += matter.scene.gravity * matter.diagnostics.buoyed(sums, down)
     late = matter.diagnostics.behind.to_numpy()
     (viscous, stored, work), by_parts = matter.forces.counted(late), matter.bodies.work_until(late)

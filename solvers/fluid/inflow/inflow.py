@@ -6,16 +6,13 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.inflow.heads import Heads
-from solvers.fluid.inflow.inlet import mouth
+from solvers.fluid.inflow.places import Places
 from solvers.fluid.lists.neighbours import NEVER, FluidContext
 from solvers.fluid.state import FAR, UNUSED
+from solvers.fluid.state import ROOM as USUAL
 from solvers.machine.errors import Unavailable
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, State, roomy
 from solvers.motion.frame import turned
-
-NEAR = 0.9  # spacings: where another particle is nearer than that, none can enter
-TRIES = 6  # places in an opening that a particle tries
-TURN = 0.6180339887498949  # golden section: places that follow one another spread evenly (Weyl 1916)
 
 
 @ti.data_oriented
@@ -25,10 +22,10 @@ class Inflow:
     The flow is that of `Heads`. Particles that wait are in no block; each room has a stack of their numbers, from which
     those that enter are taken and to which those that leave go back. They enter as the lists are rebuilt, which a
     particle that is due asks for: in the opening's mouth, half a spacing from the wall, spread over its length as the
-    flow is, with the speed of the jet, √(2 g Δh), square to the wall and in the ship's axes. Where water already stands
-    before the mouth they are laid on top of it, over the mouth, at rest in the ship: a jet under water is not resolved.
-    What finds no place waits for the next step and is not lost. Where the level in a room is higher than the sea's
-    the particle nearest to the mouth leaves.
+    flow is, with the speed of the jet, √(2 g Δh), square to the wall and in the ship's axes. Where the room's level is
+    over the mouth they are laid on the water, anywhere across the room, and move as it does: its level rises everywhere
+    at once, and the jet under water, with its momentum, is left out. What finds no place waits for the next step and is
+    not lost. Where the level in a room is higher than the sea's the particle nearest to the mouth leaves.
 
     The weight and the impact of this water load the ship by her walls, as those of any water. Of the hull outside
     nothing changes: she is buoyant as if closed (added weight), and that the pressure is missing over an opening's area
@@ -42,7 +39,8 @@ class Inflow:
     def __init__(self, arrays: State, scene, context: FluidContext, carrier):
         fluid, tanks, self.units = scene.fluid, scene.tanks, context.units
         self.particles, self.lists, self.order = context.particles, context.lists, context.lists.order
-        self.constants, self.carrier, self.inlets = context.constants, carrier, fluid.inlets
+        self.constants, self.carrier = context.constants, carrier
+        self.unknown = [self.particles.eigenvalue, *self.particles.noted]  # of a particle that has just entered
         self.lists.let_in(self)
         if self.units.single:
             raise Unavailable('inflow: is computed world by world; set run.arch = "cpu" and run.schedule = "auto".')
@@ -50,11 +48,8 @@ class Inflow:
         outlines = [tank.outline for tank in tanks]
         self.heads = Heads(arrays, fluid.inlets, outlines, carrier, worlds)
         own = arrays.under("water.inflow")
-        mouths = [mouth(one, outlines[one.room]) for one in fluid.inlets]
-        self.mouth = own.holding("mouth", np.array([ends.ravel() for ends, _ in mouths]), "inlet number", exact)
-        self.inward = own.holding("inward", np.array([inward for _, inward in mouths]), "inlet direction", exact)
-        spacing = fluid.water.spacing
-        self.cell, self.spacing, self.exact = spacing**2, spacing, exact
+        self.places = Places(arrays, fluid.inlets, outlines, context, self.heads)
+        self.exact, self.volume = exact, fluid.water.spacing**2  # m², of a particle
         factor = [one.discharge * one.share * one.width for one in fluid.inlets]
         self.factor = own.holding("factor", np.array(factor), "inlet", exact)  # of ∫ √(2 g Δh) ds, to m² a second
         self.lengths = np.array([one.along for one in fluid.inlets])
@@ -65,17 +60,16 @@ class Inflow:
         self.still = own.holding("still", _areas(fluid), "room", exact)  # m², that starts in each tank
         world, inlet, room = Axis("world", worlds), Axis("inlet", self.count), Axis("room", len(tanks))
         self.due, self.rate = own.reals((world, inlet), "due", "rate", kind=exact)
-        self.entered, self.turns = own.integers((world, inlet), "entered", "turns")
+        (self.entered,) = own.integers((world, inlet), "entered")
         (self.left,) = own.integers((world, room), "left")
-        (self.stack,) = own.integers((world, Axis("particle", fluid.count)), "stack")
+        (self.stack,) = own.integers((world, Axis("particle", roomy(fluid.count, USUAL))), "stack")
         self.brought, self.clock = own.reals((world,), "brought", "clock", kind=exact)
-        (self.spot,) = own.reals((world, Axis("number", 3)), "spot", kind=exact, kept=False)  # m, m, and jet in m/s
 
     def forget(self) -> None:
         """Nothing has entered yet."""
-        for field in (self.due, self.rate, self.entered, self.turns, self.brought, self.clock):
+        for field in (self.due, self.rate, self.entered, self.places.turns, self.brought, self.clock):
             field.fill(0)
-        worlds, stack = self.particles.worlds, np.zeros(self.fills.sum(), dtype=np.int32)
+        worlds, stack = self.particles.worlds, np.zeros(self.stack.shape[1], dtype=np.int32)
         for end, fill, wait in zip(np.cumsum(self.fills), self.fills, self.waiting, strict=True):
             stack[end - fill : end - fill + wait] = np.arange(end - 1, end - 1 - wait, -1)
         self.left.from_numpy(np.tile(self.waiting, (worlds, 1)).astype(np.int32))
@@ -84,7 +78,7 @@ class Inflow:
     def read(self, thickness: float) -> dict[str, np.ndarray]:
         """The quantities of every world, for tanks of a `thickness` (m)."""
         return {
-            "inflow_volume": self.entered.to_numpy() * self.cell * self.lengths,
+            "inflow_volume": self.entered.to_numpy() * self.volume * self.lengths,
             "inflow_rate": self.rate.to_numpy() * self.lengths,
             "inflow_energy": self.brought.to_numpy() * thickness,
         }
@@ -110,7 +104,7 @@ class Inflow:
             if (self.left[w, room] == 0 and rate > 0.0) or (self.left[w, room] == self.most[room] and rate < 0.0):
                 rate = 0.0  # the room is full, or empty
             self.rate[w, k] = self.factor[k] * speed * rate
-            self.due[w, k] = self.due[w, k] + self.rate[w, k] * ti.cast(dt, self.exact) / self.cell
+            self.due[w, k] = self.due[w, k] + self.rate[w, k] * ti.cast(dt, self.exact) / self.cell()
             if ti.abs(self.due[w, k]) >= 1.0:
                 asks = 1
         if asks > 0:
@@ -118,13 +112,18 @@ class Inflow:
         return True
 
     @ti.func
+    def cell(self):
+        """Volume (m²) of a particle that enters."""
+        return self.places.spacing() * self.places.spacing()
+
+    @ti.func
     def area(self, w, room):
         """Area (m²) of the water in a room."""
-        return self.still[room] + self.cell * (self.waited[room] - self.left[w, room])
+        return self.still[room] + self.cell() * (self.waited[room] - self.left[w, room])
 
     @ti.func
     def admit(self, w):
-        """Let all that is due in a world enter or leave; its particles are sorted, and its lists rebuilt, thereafter."""
+        """Let all that is due in a world enter or leave, before its particles are sorted and its lists rebuilt."""
         p, new = self.particles, 0
         for k in range(self.count):
             room, going = self.heads.room[k], True
@@ -132,7 +131,7 @@ class Inflow:
                 block = p.used[w] + new // p.lanes
                 going = block < p.fluid_blocks
                 if going:
-                    going = self.find(w, k, new)
+                    going = self.places.find(w, k, self.clock[w], new)
                 if going:
                     self.enter(w, k, w * p.stride + block, new % p.lanes)
                     new += 1
@@ -144,97 +143,21 @@ class Inflow:
                 going = self.leave(w, k)
 
     @ti.func
-    def find(self, w, k, new):
-        """Find where a particle may enter by an opening, `new` ones being in already; returns whether it can."""
-        pose, found = self.carrier.kinematics(w, self.clock[w]), False
-        up = turned(0.0, 1.0, 0.0 - pose[2])
-        for _ in range(TRIES):
-            if not found:
-                self.turns[w, k] = self.turns[w, k] + 1
-                part = self.turns[w, k] * ti.cast(TURN, self.exact)
-                s = self.heads.place(w, k, part - ti.floor(part), 1.0)
-                self.stand_at(w, k, s)
-                self.spot[w, 2] = ti.sqrt(2.0 * self.carrier.gravity[0] * ti.max(self.heads.head(w, k, s), 0.0))
-                over = self.top(w, self.heads.room[k], up, new)
-                found = over <= 0.0
-                if not found:  # water stands before the mouth: on top of it
-                    self.spot[w, 0] = self.spot[w, 0] + over * up[0]
-                    self.spot[w, 1] = self.spot[w, 1] + over * up[1]
-                    self.spot[w, 2] = 0.0
-                    found = self.is_within(self.heads.room[k], self.spot[w, 0], self.spot[w, 1])
-        return found
-
-    @ti.func
-    def stand_at(self, w, k, s):
-        """Note the place before the mouth of an opening at a share of its length, half a spacing from all walls."""
-        y, z = self.mouth[k, 2] - self.mouth[k, 0], self.mouth[k, 3] - self.mouth[k, 1]
-        size, half = ti.sqrt(y * y + z * z), 0.5 * self.spacing
-        at = ti.cast(0.5, self.exact)
-        if size > self.spacing:
-            at = ti.max(half, ti.min(size - half, s * size)) / size
-        self.spot[w, 0] = self.mouth[k, 0] + at * y + half * self.inward[k, 0]
-        self.spot[w, 1] = self.mouth[k, 1] + at * z + half * self.inward[k, 1]
-
-    @ti.func
-    def top(self, w, room, up: ti.template(), new):
-        """How far (m) upwards of the noted place there is room over all water above it; 0 where it is free itself."""
-        p, near = self.particles, NEAR * self.spacing
-        begin, over, free = w * p.stride, ti.cast(0.0, self.exact), True
-        for b in range(begin, begin + p.used[w] + (new + p.lanes - 1) // p.lanes):
-            for lane in range(p.lanes):
-                if p.number[b, lane] != UNUSED and self.layer_of(p.number[b, lane]) == room:
-                    y = ti.cast(p.place[0][b, lane], self.exact) - self.spot[w, 0]
-                    z = ti.cast(p.place[1][b, lane], self.exact) - self.spot[w, 1]
-                    along = y * up[0] + z * up[1]
-                    beside = ti.max(y * y + z * z - along * along, 0.0)
-                    if beside < near * near:
-                        over = ti.max(over, along + ti.sqrt(near * near - beside))
-                    if y * y + z * z < near * near:
-                        free = False
-        if free:
-            over = 0.0
-        return over
-
-    @ti.func
-    def layer_of(self, number):
-        """The tank of a particle."""
-        layer = 0
-        if ti.static(self.order.layers > 1):
-            layer = self.order.layer_of(number)
-        return layer
-
-    @ti.func
-    def is_within(self, room, y, z):
-        """Whether a place (m) is in a room, half a spacing from its walls."""
-        inside, least = False, 0.49 * self.spacing
-        for side in range(self.heads.sides):
-            y0, z0 = self.heads.corners[room, side, 0], self.heads.corners[room, side, 1]
-            y1, z1 = self.heads.corners[room, side + 1, 0], self.heads.corners[room, side + 1, 1]
-            if (z0 > z) != (z1 > z):
-                if y < y0 + (z - z0) / (z1 - z0) * (y1 - y0):
-                    inside = not inside
-            size = (y1 - y0) * (y1 - y0) + (z1 - z0) * (z1 - z0)
-            share = ((y - y0) * (y1 - y0) + (z - z0) * (z1 - z0)) / ti.max(size, 1e-30)
-            share = ti.max(0.0, ti.min(1.0, share))
-            away_y, away_z = y - y0 - share * (y1 - y0), z - z0 - share * (z1 - z0)
-            if size > 0.0 and away_y * away_y + away_z * away_z < least * least:
-                inside, least = False, ti.cast(1e6, self.exact)
-        return inside and least < 1e5
-
-    @ti.func
     def enter(self, w, k, b, lane):
         """Put the next particle that waits at the noted place, in a lane that is not in use."""
         p, room, motion = self.particles, self.heads.room[k], self.carrier.kinematics(w, self.clock[w])
-        y, z, jet = self.spot[w, 0], self.spot[w, 1], self.spot[w, 2]
-        along = turned(motion[3], motion[4], 0.0 - motion[2])
-        speed_y = along[0] - motion[5] * z + jet * self.inward[k, 0]
-        speed_z = along[1] + motion[5] * y + jet * self.inward[k, 1]
-        mass = ti.cast(self.constants.get("density"), self.exact) * self.cell
+        y, z, speed_y, speed_z = (
+            self.places.spot[w, 0],
+            self.places.spot[w, 1],
+            self.places.spot[w, 2],
+            self.places.spot[w, 3],
+        )
+        mass = ti.cast(self.constants.get("density"), self.exact) * self.cell()
         self.left[w, room] = self.left[w, room] - 1
         p.place[0][b, lane], p.place[1][b, lane] = ti.cast(y, p.where), ti.cast(z, p.where)
         p.velocity[0][b, lane], p.velocity[1][b, lane] = ti.cast(speed_y, p.real), ti.cast(speed_z, p.real)
         p.deviation[b, lane], p.mass[b, lane] = ti.cast(0.0, p.real), ti.cast(mass, p.real)
-        for field in ti.static(p.noted):
+        for field in ti.static(self.unknown):
             field[b, lane] = ti.cast(0.0, p.real)
         p.number[b, lane] = self.stack[w, self.first[room] + self.left[w, room]]
         self.pass_by(w, k, 1, mass * (0.5 * (speed_y * speed_y + speed_z * speed_z) + self.lifted(motion, y, z)))
@@ -258,15 +181,13 @@ class Inflow:
     def leave(self, w, k):
         """Take the particle of a room that is nearest to an opening's mouth out of it; returns whether there is one."""
         p, room, motion = self.particles, self.heads.room[k], self.carrier.kinematics(w, self.clock[w])
-        self.turns[w, k] = self.turns[w, k] + 1
-        part = self.turns[w, k] * ti.cast(TURN, self.exact)
-        self.stand_at(w, k, self.heads.place(w, k, part - ti.floor(part), -1.0))
+        self.places.stand_at(w, k, self.heads.place(w, k, self.places.next(w, k), -1.0))
         begin, nearest, found = w * p.stride, ti.cast(1e6, self.exact), -1
         for b in range(begin, begin + p.used[w]):
             for lane in range(p.lanes):
-                if p.number[b, lane] != UNUSED and self.layer_of(p.number[b, lane]) == room:
-                    y = ti.cast(p.place[0][b, lane], self.exact) - self.spot[w, 0]
-                    z = ti.cast(p.place[1][b, lane], self.exact) - self.spot[w, 1]
+                if self.places.is_in(b, lane, room):
+                    y = ti.cast(p.place[0][b, lane], self.exact) - self.places.spot[w, 0]
+                    z = ti.cast(p.place[1][b, lane], self.exact) - self.places.spot[w, 1]
                     if y * y + z * z < nearest:
                         nearest, found = y * y + z * z, b * p.lanes + lane
         goes = found >= 0 and self.left[w, room] < self.most[room]

@@ -23,10 +23,10 @@ Length = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
 
 @dataclass(frozen=True)
 class Inlet:
-    """An opening in the hull of a ship, such as a hatch or a port, that leads to a room: water enters where it is under.
+    """An opening in the hull of a ship, such as a hatch or a port, that leads to a room, which water enters by it.
 
-    The flow is Q = C_d ∫ √(2 g Δh) dA (`docs/physics/flooding-ships.md`). The room is [tank] or one of [tanks]; it may
-    be empty at the start. It must not hold grains, whose holds flood at `ship.openings`.
+    The flow is Q = C_d ∫ √(2 g Δh) dA where it is under water. The room is [tank] or one of [tanks]; it may be
+    empty at the start. It must not hold grains, whose holds flood at `ship.openings`.
     """
 
     points: Annotated[Ends, Doc("Its two ends in the hull's axes, y and z each.")]
