@@ -42,7 +42,7 @@ from lab.preset.sections.water.bodies import WithBodies
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.floating import check_hold
 from lab.preset.sections.water.flow_checks import check_weight
-from lab.preset.sections.water.inflow import Inlet, check_inflow
+from lab.preset.sections.water.inflow import Inlet
 from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import DampingZone, Gauge, Water
 from lab.preset.sections.water.solids import check_solids
@@ -100,9 +100,9 @@ class Preset(WithBodies):
     tanks: Annotated[dict[str, FurtherTank], Doc("Further tanks of the ship, beside [tank].")] = field(
         default_factory=dict
     )
-    inflow: Annotated[
-        dict[str, Inlet], Of("water"), Doc("Openings of the ship by which water enters her tanks, by name.")
-    ] = field(default_factory=dict)
+    inflow: Annotated[dict[str, Inlet], Of("water"), Doc("Openings by which water enters.")] = field(
+        default_factory=dict
+    )
     stability: Annotated[Stability, Doc("What criteria of stability need to know of the whole ship.")] = field(
         default_factory=Stability
     )
@@ -219,13 +219,11 @@ def check(preset: Preset) -> None:
     check_motion(preset.motion, preset.tank.extent)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
     check_tanks(preset)
-    check_inflow(preset)
     check_weight(preset)
     check_water(preset)
     check_air(preset)
-    duration = duration_of(preset.run, preset.motion)
     others = preset.ship is not None, bool(preset.motion.parts), bool(preset.matters)
-    check_axle(preset.axle, *others, duration, max(preset.tank.extent))
+    check_axle(preset.axle, *others, duration_of(preset.run, preset.motion), max(preset.tank.extent))
     check_solids(preset)
     check_stability(preset.stability, preset.ship)
     check_video(preset.video, preset.matters)

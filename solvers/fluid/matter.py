@@ -132,7 +132,7 @@ class WaterMatter(Matter):
         self.substeps.note(w, kick)
         if ti.static(self.bodies.count > 0):
             self.bodies.note(w, t, dt)
-        if ti.static(self.lists.leaks):
+        if ti.static(self.order.leaks):
             self.inflow.note(w, t)
 
     @ti.func

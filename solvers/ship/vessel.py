@@ -27,8 +27,9 @@ class Vessel:
     if the ship is free to heave. In calm water it rests at a roll of `rest` (rad), cargo and all. The ship has capsized
     when its roll leaves `limits` (rad), and floods when one of its `openings` (m, hull's frame) is below the local
     water surface. One that `sinks`, since she takes in water, has sunk when all of her is below that surface. `height`
-    (m) is that of the hull's origin when upright, None: as the ship floats in equilibrium. With a `handover` (s) she takes steps of that length with a load that is extrapolated (`motion.staggered_ships`); None:
-    she responds to the load of each instant (`motion.floating_ships`).
+    (m) is that of the hull's origin when upright, None: as the ship floats in equilibrium. With a `handover` (s) she
+    takes steps of that length with a load that is extrapolated (`motion.staggered_ships`); None: she responds to the
+    load of each instant (`motion.floating_ships`).
     """
 
     ship: Ship

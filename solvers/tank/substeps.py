@@ -58,7 +58,7 @@ class Substeps:
                     rebuilds = 1
             self.rebuilding[w] = rebuilds
         if rebuilds > 0:
-            self.lists.sort(w)
+            self.lists.order.sort_world(w)
 
     @ti.func
     def rebuilds(self, u):

@@ -41,7 +41,7 @@ class Inflow:
         self.particles, self.lists, self.order = context.particles, context.lists, context.lists.order
         self.constants, self.carrier = context.constants, carrier
         self.unknown = [self.particles.eigenvalue, *self.particles.noted]  # of a particle that has just entered
-        self.lists.let_in(self)
+        self.order.let_in(self)
         if self.units.single:
             raise Unavailable('inflow: is computed world by world; set run.arch = "cpu" and run.schedule = "auto".')
         self.count, worlds, exact = len(fluid.inlets), context.particles.worlds, arrays.exact

@@ -86,7 +86,7 @@ class Places:
 
     @ti.func
     def lie_on_top(self, w, k, roll, new):
-        """Note a place on the water, anywhere across a room, which moves as the water there; returns whether it is free.
+        """Note a place on the water, anywhere across a room, moving as the water there; returns whether it is free.
 
         It is over the highest particle that is no spray.
         """

@@ -61,7 +61,6 @@ class Lists:
         self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), *ends)
         self.facing = Listing(arrays, units, "facing", dry, crowd * dry, *ends)
         self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
-        self.inflow, self.leaks = None, False  # what lets particles enter before they are sorted
         self.displacement = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
 
@@ -74,17 +73,6 @@ class Lists:
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
         self.displacement.fill(NEVER)
-
-    def let_in(self, inflow) -> None:
-        """Let particles enter by an `inflow` (`solvers.fluid.inflow.inflow.Inflow`) as lists are rebuilt."""
-        self.inflow, self.leaks = inflow, True
-
-    @ti.func
-    def sort(self, w):
-        """Sort the particles of a world, with those that enter it now."""
-        if ti.static(self.leaks):
-            self.inflow.admit(w)
-        self.order.sort_world(w)
 
     @ti.func
     def may_be_invalid(self, u):

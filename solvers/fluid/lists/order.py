@@ -51,6 +51,7 @@ class Order:
 
     def __init__(self, arrays: State, particles: Particles, grid: Grid, tanks: Tanks):
         self.particles, self.grid = particles, grid
+        self.inflow, self.leaks = None, False  # what lets particles enter before they are sorted
         self.layers = grid.layers
         sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins, grid.rows
         # A particle of a full tank takes two keys, and there is room for twice as many.
@@ -131,9 +132,15 @@ class Order:
                 beyond = ti.floor((p.place[a][b, lane] - self.numbers[6 + a]) / period)
                 p.place[a][b, lane] = p.place[a][b, lane] - beyond * period
 
+    def let_in(self, inflow) -> None:
+        """Let particles enter by an `inflow` (`solvers.fluid.inflow.inflow.Inflow`) whenever they are sorted."""
+        self.inflow, self.leaks = inflow, True
+
     @ti.func
     def sort_world(self, w):
-        """Sort the particles of one world, on one thread."""
+        """Sort the particles of one world, on one thread, with those that enter it now."""
+        if ti.static(self.leaks):
+            self.inflow.admit(w)
         start, lanes = w * self.particles.stride, self.particles.lanes
         for k in range(self.sizes[KEYS]):
             self.cursor[w, k] = 0

@@ -38,7 +38,7 @@ def held(keel: float) -> Vessel:
 
 
 def room(keels: tuple[float, ...] = (-0.15,), inlet: Inlet = PORT, depth: float = 0.0, **changes) -> Scene:
-    """A tank on her keel, WIDE and HIGH, with water up to a `depth` (m) and an opening; a world for each of the keels."""
+    """A tank on her keel, WIDE and HIGH, with water up to a `depth` (m) and an opening; a world for each keel."""
     sound = 10.0 * np.sqrt(GRAVITY * HIGH)
     drops = lattice(WIDE, depth, SPACING, sound) if depth else particles(1, 0)
     places = round(WIDE * HIGH / SPACING**2) - drops.shape[1]
@@ -69,7 +69,7 @@ def flow(levels: tuple[float, float], inlet: Inlet = PORT, turn: float = 0.0, at
 
 
 def integrated(rows: list, sea: float, volume: float = 0.0) -> Iterator[float]:
-    """The volume (m³) in the room at the times of rows, with the sea so high (m) over her keel; Euler's steps of 1 ms."""
+    """The volume (m³) in the room at the times of rows, the sea so high (m) over her keel; Euler's steps of 1 ms."""
     time = 0.0
     for row in rows:
         while time < row["time"] - 0.5e-3:

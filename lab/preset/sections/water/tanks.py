@@ -9,7 +9,7 @@ from lab.base.errors import LabError
 from lab.preset.outline import stands_out
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.tank import FurtherTank, Tank, check_tank
-from lab.preset.sections.water.inflow import Inlet, rooms_with_inflow
+from lab.preset.sections.water.inflow import Inlet, check_inflow, rooms_with_inflow
 from lab.preset.sections.water.section import Water
 from lab.preset.units import show
 from solvers.fluid.start.packing import area_of, below
@@ -101,6 +101,7 @@ def check_tanks(preset: Tanked) -> None:
     if ship is None:
         if preset.tanks:
             raise LabError("tanks: go with a ship; add a table [ship], or leave them out.")
+        check_inflow(preset)
         return
     for name, tank in preset.tanks.items():
         if tank.length and not ship.length:
@@ -109,6 +110,7 @@ def check_tanks(preset: Tanked) -> None:
             raise LabError(f"tanks.{name}.length: is more than the ship's, {show(ship.length, 'm')}.")
     for name, tank in preset.tanks.items():
         _check_further(preset, name, tank)
+    check_inflow(preset)
 
 
 def _check_further(preset: Tanked, name: str, tank: FurtherTank) -> None:
