@@ -30,6 +30,7 @@ from lab.measures import (
     gauge_statistics,
     heap_angle,
     hysteresis,
+    inflow,
     level_crests,
     liquid_mass,
     run_up,
@@ -58,6 +59,7 @@ from lab.recording import Recording
 # In the order in which a report shows their numbers and figures.
 MEASURES = (
     ship_roll,
+    inflow,
     ship_frozen,
     ship_stability,
     ship_grain,

@@ -1,13 +1,14 @@
 """How a ship with cargo rolls. Roll, sway and heave are those of her axis (`lab.preset.ship.axis_motion`).
 
 largest_roll: the largest |roll| of the run. capsized_at: when her roll left its limits. flooded_at: when the edge of
-her hatch, or another opening, went under the local surface of the water.
+her hatch, or another opening, went under the local surface of the water. sunk_at: when all of a ship that takes in
+water was below it.
 roll_period: mean time between upward crossings of the mean roll in the last half of the run.
 
 In regular waves, over their last ten periods (`solvers.ship.outcome`); none for a ship that was lost:
 roll_amplitude: half the way from one side to the other, the mean over periods. roll_bias: the mean roll, positive to
-port. The note of the amplitude says what became of her: upright, biased (by half a degree or more), capsized or
-flooded. It says "several frequencies" where a tenth or more of the rms of the roll is at frequencies other than the
+port. The note of the amplitude says what became of her: upright, biased (by half a degree or more), capsized, flooded
+or sunk. It says "several frequencies" where a tenth or more of the rms of the roll is at frequencies other than the
 waves' and its multiples.
 sway_amplitude, heave_amplitude, roll_fundamental: of the motion of the axis at the waves' frequency, by least squares.
 

@@ -24,6 +24,8 @@ from solvers.motion import MOTIONS
 TELLING = (
     "capsized_at",
     "flooded_at",
+    "sunk_at",
+    "entered_",
     "roll_amplitude",
     "frozen_amplitude",
     "significant_roll",

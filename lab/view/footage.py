@@ -77,7 +77,7 @@ class LiveFootage:
         self.static = static
         for name in ("radius", "kind", "water", "outline", "open_edges", "fixed", "parts", "shapes"):
             setattr(self, name, getattr(static, name))
-        self.matters, self.hold = static.preset.matters, None
+        self.matters, self.hold, self.leaks = static.preset.matters, None, bool(static.preset.inflow)
         volume = self.water.volume if self.water else np.zeros((1, 0))
         self.basins = basins_of(static.preset, static.outline, static.open_edges, volume)
         self.cargo = Stowage.of(static.preset)

@@ -4,7 +4,7 @@ import time
 from dataclasses import dataclass
 
 from lab.preset.sections.video import colours_of
-from lab.recording.ship_end import VERBS, End, end_of
+from lab.recording.ship_end import End, end_of
 from lab.view.footage import LiveFootage
 
 SHOWN_FOR = 6.0  # s; how long a message is shown
@@ -67,7 +67,9 @@ class Shown:
         """How the ship was lost, if she is lost in the frame shown."""
         if self.settling or not self.footage or not self.footage.sea:
             return None
-        return end_of(*(self.footage.row(self.frame, name) for name in VERBS), self.footage.row(self.frame, "pose")[2])
+        names = ("capsized", "flooded", *(("sunk",) if self.footage.leaks else ()))
+        capsized, flooded, *sunk = (self.footage.row(self.frame, name) for name in names)
+        return end_of(capsized, flooded, self.footage.row(self.frame, "pose")[2], *sunk)
 
     @property
     def colours(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The outcome of a run in waves: whether the ship stayed upright, took a bias, capsized or flooded; roll limits."""
+"""The outcome of a run in waves: whether the ship stayed upright, took a bias, or was lost; roll limits."""
 
 from dataclasses import dataclass
 from math import pi
@@ -39,7 +39,7 @@ def _vanishing(section: Immersible, loading: Loading, water: Water, side: int, l
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a roll motion ended: `kind` upright, biased, capsized or flooded, and whether it has `several` frequencies.
+    """How a roll ended: `kind` upright, biased, capsized, flooded or sunk, and whether it has `several` frequencies.
 
     Over the last cycles: `mean` (rad), `amplitude` (rad), the mean of half the range of roll in each period, and the
     `largest` |roll| (rad).
@@ -55,7 +55,7 @@ class Outcome:
 def outcome(time: np.ndarray, roll: np.ndarray, frequency: float, lost: str = "") -> Outcome:
     """Classify a roll (n,) rad at equally spaced times (n,) s in waves of a frequency (rad/s), by its last cycles.
 
-    `lost`: "capsized" or "flooded" if the run ended so. Else raises `Unavailable` if the run is too short.
+    `lost`: "capsized", "flooded" or "sunk" if the run ended so. Else raises `Unavailable` if the run is too short.
     """
     period = 2.0 * pi / frequency
     if time[-1] - time[0] < CYCLES * period and not lost:

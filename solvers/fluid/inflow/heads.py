@@ -100,8 +100,12 @@ class Heads:
         three = ti.min(self.crossing(sea0 - room, sea1 - room), until)
         first, last = ti.min(one, ti.min(two, three)), ti.max(one, ti.max(two, three))
         middle = one + two + three - first - last
-        total = self.between(w, k, 0.0 * until, first, way) + self.between(w, k, first, middle, way)
-        return total + self.between(w, k, middle, last, way) + self.between(w, k, last, until, way)
+        total, begin = 0.0 * until, 0.0 * until
+        for part in range(4):  # a loop, since functions are compiled wherever they are called
+            end = ti.select(part == 0, first, ti.select(part == 1, middle, ti.select(part == 2, last, until)))
+            total += self.between(w, k, begin, end, way)
+            begin = end
+        return total
 
     @ti.func
     def crossing(self, before, after):
@@ -121,12 +125,15 @@ class Heads:
     @ti.func
     def place(self, w, k, part, way):
         """The share of an opening up to which this part of what goes one way flows."""
-        low, high = ti.cast(0.0, self.exact), ti.cast(1.0, self.exact)
-        wanted = part * self.through(w, k, high, way)
-        for _ in range(24):
-            middle = 0.5 * (low + high)
-            if self.through(w, k, middle, way) < wanted:
-                low = middle
+        low, high, at = ti.cast(0.0, self.exact), ti.cast(1.0, self.exact), ti.cast(1.0, self.exact)
+        wanted = ti.cast(-1.0, self.exact)
+        for _ in range(25):
+            passed = self.through(w, k, at, way)
+            if wanted < 0.0:
+                wanted = part * passed  # the first is all of it
+            elif passed < wanted:
+                low = at
             else:
-                high = middle
-        return 0.5 * (low + high)
+                high = at
+            at = 0.5 * (low + high)
+        return at

@@ -97,8 +97,9 @@ class Inflow:
         for k in range(self.count):
             room = self.heads.room[k]
             self.heads.look(w, k, pose, self.clock[w], self.area(w, room))
-            most = ti.cast(1.0, self.exact)
-            rate = self.heads.through(w, k, most, 1.0) - self.heads.through(w, k, most, -1.0)
+            rate = ti.cast(0.0, self.exact)
+            for way in range(2):  # in, and out
+                rate += (1 - 2 * way) * self.heads.through(w, k, ti.cast(1.0, self.exact), 1 - 2 * way)
             if beds_settle:
                 rate = 0.0
             if (self.left[w, room] == 0 and rate > 0.0) or (self.left[w, room] == self.most[room] and rate < 0.0):
@@ -182,14 +183,13 @@ class Inflow:
         """Take the particle of a room that is nearest to an opening's mouth out of it; returns whether there is one."""
         p, room, motion = self.particles, self.heads.room[k], self.carrier.kinematics(w, self.clock[w])
         self.places.stand_at(w, k, self.heads.place(w, k, self.places.next(w, k), -1.0))
-        begin, nearest, found = w * p.stride, ti.cast(1e6, self.exact), -1
-        for b in range(begin, begin + p.used[w]):
-            for lane in range(p.lanes):
-                if self.places.is_in(b, lane, room):
-                    y = ti.cast(p.place[0][b, lane], self.exact) - self.places.spot[w, 0]
-                    z = ti.cast(p.place[1][b, lane], self.exact) - self.places.spot[w, 1]
-                    if y * y + z * z < nearest:
-                        nearest, found = y * y + z * z, b * p.lanes + lane
+        nearest, found = ti.cast(1e6, self.exact), -1
+        for slot in range(self.places.first_slot(w), self.places.end_slot(w, 0)):
+            if self.places.is_in(slot // p.lanes, slot % p.lanes, room):
+                y = ti.cast(p.place[0][slot // p.lanes, slot % p.lanes], self.exact) - self.places.spot[w, 0]
+                z = ti.cast(p.place[1][slot // p.lanes, slot % p.lanes], self.exact) - self.places.spot[w, 1]
+                if y * y + z * z < nearest:
+                    nearest, found = y * y + z * z, slot
         goes = found >= 0 and self.left[w, room] < self.most[room]
         if goes:
             b, lane = found // p.lanes, found % p.lanes

@@ -56,14 +56,15 @@ class Places:
                 s = self.heads.place(w, k, self.next(w, k), 1.0)
                 self.stand_at(w, k, s)
                 height = motion[1] + turned(self.spot[w, 0], self.spot[w, 1], motion[2])[1]
+                may = True
                 if height < self.heads.seen[w, k, ROOM]:
-                    found = self.lie_on_top(w, k, motion[2], new)
+                    may = self.lie_on_top(w, k, motion[2], new)
                 else:
                     jet = ti.sqrt(2.0 * self.carrier.gravity[0] * ti.max(self.heads.head(w, k, s), 0.0))
                     own = turned(motion[3], motion[4], 0.0 - motion[2])
                     self.spot[w, 2] = own[0] - motion[5] * self.spot[w, 1] + jet * self.inward[k, 0]
                     self.spot[w, 3] = own[1] + motion[5] * self.spot[w, 0] + jet * self.inward[k, 1]
-                    found = self.is_free(w, room, new)
+                found = may and self.is_free(w, room, new)
         return found
 
     @ti.func
@@ -97,21 +98,20 @@ class Places:
             x = self.heads.corners[room, corner, 0] * across[0] + self.heads.corners[room, corner, 1] * across[1]
             low, high = ti.min(low, x), ti.max(high, x)
         at, top, found = low + self.next(w, k) * (high - low), ti.cast(-1e6, self.exact), -1
-        for b in range(w * p.stride, w * p.stride + p.used[w] + (new + p.lanes - 1) // p.lanes):
-            for lane in range(p.lanes):
-                if self.is_in(b, lane, room) and p.eigenvalue[b, lane] > SPRAY:
-                    y, z = ti.cast(p.place[0][b, lane], self.exact), ti.cast(p.place[1][b, lane], self.exact)
-                    beside, over = y * across[0] + z * across[1] - at, y * up[0] + z * up[1]
-                    if beside * beside < near * near:
-                        over += ti.sqrt(near * near - beside * beside)
-                        if over > top:
-                            top, found = over, b * p.lanes + lane
+        for slot in range(self.first_slot(w), self.end_slot(w, new)):
+            b, lane = slot // p.lanes, slot % p.lanes
+            if self.is_in(b, lane, room) and p.eigenvalue[b, lane] > SPRAY:
+                y, z = ti.cast(p.place[0][b, lane], self.exact), ti.cast(p.place[1][b, lane], self.exact)
+                beside, over = y * across[0] + z * across[1] - at, y * up[0] + z * up[1]
+                if beside * beside < near * near:
+                    over += ti.sqrt(near * near - beside * beside)
+                    if over > top:
+                        top, found = over, slot
         if found >= 0:
             self.spot[w, 0], self.spot[w, 1] = at * across[0] + top * up[0], at * across[1] + top * up[1]
             for a in ti.static(range(p.axes)):
                 self.spot[w, 2 + a] = ti.cast(p.velocity[a][found // p.lanes, found % p.lanes], self.exact)
-        free = found >= 0 and self.is_within(room, self.spot[w, 0], self.spot[w, 1])
-        return free and self.is_free(w, room, new)
+        return found >= 0 and self.is_within(room, self.spot[w, 0], self.spot[w, 1])
 
     @ti.func
     def is_in(self, b, lane, room):
@@ -122,14 +122,25 @@ class Places:
     def is_free(self, w, room, new):
         """Whether no particle of a room is near the noted place."""
         p, near, free = self.particles, 0.999 * NEAR * self.spacing(), True
-        for b in range(w * p.stride, w * p.stride + p.used[w] + (new + p.lanes - 1) // p.lanes):
-            for lane in range(p.lanes):
-                if self.is_in(b, lane, room):
-                    y = ti.cast(p.place[0][b, lane], self.exact) - self.spot[w, 0]
-                    z = ti.cast(p.place[1][b, lane], self.exact) - self.spot[w, 1]
-                    if y * y + z * z < near * near:
-                        free = False
+        for slot in range(self.first_slot(w), self.end_slot(w, new)):
+            b, lane = slot // p.lanes, slot % p.lanes
+            if self.is_in(b, lane, room):
+                y = ti.cast(p.place[0][b, lane], self.exact) - self.spot[w, 0]
+                z = ti.cast(p.place[1][b, lane], self.exact) - self.spot[w, 1]
+                if y * y + z * z < near * near:
+                    free = False
         return free
+
+    @ti.func
+    def first_slot(self, w):
+        """The first slot of a world: lane by lane, since loops over a block's lanes would be unrolled."""
+        return w * self.particles.stride * self.particles.lanes
+
+    @ti.func
+    def end_slot(self, w, new):
+        """The end of the slots of a world that are in use, with those of `new` particles behind them."""
+        p = self.particles
+        return (w * p.stride + p.used[w]) * p.lanes + new
 
     @ti.func
     def layer_of(self, number):

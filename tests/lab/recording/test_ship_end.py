@@ -50,6 +50,7 @@ def flooded(tmp_path_factory):
 def test_the_text_on_a_loss():
     assert end_of(-1.0, -1.0, 0.3) is None
     assert end_of(4.5156, -1.0, 0.5 * pi).words == "capsizes at 4.516 s, 90 deg to port"
+    assert end_of(-1.0, -1.0, 0.1, 7.0).words == "sinks at 7 s, 5.73 deg to port"
     assert end_of(5.0, 4.0, -0.5) == End("flooded", 4.0, -0.5)
     assert losses_sentence([None, None]) == losses_sentence([None]) == ""
     found = [End("capsized", 3.0, 1.6), None, End("flooded", 5.0, 0.7), End("flooded", 4.0, 0.7)]
@@ -136,7 +137,9 @@ def test_the_window_shows_the_loss_as_long_as_the_ship_is_lost():
     shown = Shown()
     shown.settling, shown.look = False, Look("kind", "earth")
     shown.footage = type(
-        "Footage", (), {"sea": True, "row": lambda _, frame, name: rows[frame][name], "__len__": lambda _: 2}
+        "Footage",
+        (),
+        {"sea": True, "leaks": False, "row": lambda _, frame, name: rows[frame][name], "__len__": lambda _: 2},
     )()
     assert shown.lost == End("flooded", 3.0, 0.7)
     shown.playhead = 0

@@ -1,0 +1,51 @@
+"""Water that has entered a ship through openings in her hull.
+
+entered_NAME: the volume that has entered through each opening by the end of the run, less what has left by it.
+Error: one particle of water, over the length of the room.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band
+from lab.measures.value import Value, over_worlds
+from lab.preset.sections.water.inflow import inlets_of
+from lab.recording import Recording
+
+OF = "water"
+COLOURS = BLUE, VERMILION, GREEN, GREY
+
+
+def applies(recording: Recording) -> bool:
+    """The ship has openings that lead to rooms."""
+    return bool(recording.preset.inflow)
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """entered_NAME (l)."""
+    last, preset = 1e3 * recording.series["inflow_volume"][-1], recording.preset
+    errors = [1e3 * inlet.along * preset.liquid.spacing**2 for inlet in inlets_of(preset)]
+    return {
+        f"entered_{name}": over_worlds(last[:, k], "l", uncertainties=np.full(len(last), errors[k]), kind="resolution")
+        for k, name in enumerate(recording.names["inlet"])
+    }
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The volume that has entered through each opening, and the flow through it."""
+    time, volume = recording.series["time"], recording.series["inflow_volume"]
+    if not volume.any():
+        return
+    (upper,), (lower,) = sheet.panels(heights=(2, 1))
+    for k, name in enumerate(recording.names["inlet"]):
+        colour = COLOURS[k % len(COLOURS)]
+        band(upper, time, 1e3 * volume[..., k], colour, name)
+        band(lower, time, 1e3 * recording.series["inflow_rate"][..., k], colour)
+    upper.set_ylabel("water entered (l)")
+    lower.set_ylabel("flow (l/s)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(time[0], time[-1])
+
+
+FIGURES = {"inflow": draw}
