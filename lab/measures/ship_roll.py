@@ -1,8 +1,8 @@
 """How a ship with cargo rolls. Roll, sway and heave are those of her axis (`lab.preset.ship.axis_motion`).
 
 largest_roll: the largest |roll| of the run. capsized_at: when her roll left its limits. flooded_at: when the edge of
-her hatch, or another opening, went under the local surface of the water. sunk_at: when all of a ship that takes in
-water was below it.
+her hatch, or another opening, went under the local surface of the water. sunk_at: when more water had entered her
+than her reserve buoyancy bears.
 roll_period: mean time between upward crossings of the mean roll in the last half of the run.
 
 In regular waves, over their last ten periods (`solvers.ship.outcome`); none for a ship that was lost:

@@ -106,18 +106,6 @@ class Hulls:
         return found
 
     @ti.func
-    def is_under(self, w, pose, t):
-        """Whether the whole hull is below the local water surface."""
-        arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
-        found = True
-        for k in range(self.corners):
-            place = turned(self.outline[w, k, 0], self.outline[w, k, 1], pose[2])
-            y, z = pose[0] - arm[0] + place[0], pose[1] - arm[1] + place[1]
-            if self.sea(w, y, t)[0] <= z:
-                found = False
-        return found
-
-    @ti.func
     def sea(self, w, y, t):
         """Elevation (m) and slope of the surface at the hull's origin, and the excess force over their buoyancy."""
         sums = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(5))])

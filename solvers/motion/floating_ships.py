@@ -114,7 +114,9 @@ class FloatingShips(Ships):
     def begin_interval(self, w, t, step, first, pose, velocity, force):
         """Begin an interval: advance the ship over it with the mean load of the last one."""
         length = step * self.every[0]
-        self.look_whether_lost(w, pose, t)
+        if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
+            if self.hulls.floods(w, pose, t):
+                self.flooded[w] = t
         for k in ti.static(range(3)):
             self.steady_before[w, k], self.mean_before[w, k] = self.steady[w, k], self.mean[w, k]
             self.mean[w, k] = self.load[w, k] / self.every[0]

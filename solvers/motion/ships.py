@@ -45,6 +45,7 @@ class Ships(Rates):
         self.sinks = any(vessel.sinks for vessel in self.vessels)
         if self.sinks:
             self.sunk = self._table("sunk", np.full(worlds, -1.0))
+            self.reserve = self._table("reserve", [vessel.reserve for vessel in self.vessels])
         self._declare("given", "pose", "velocity", "last")  # of P, with its last acceleration
 
     def bear(self, loads: Sequence[Load]) -> None:
@@ -128,14 +129,10 @@ class Ships(Rates):
         return goes
 
     @ti.func
-    def look_whether_lost(self, w, pose, t):
-        """Note when an opening is under water, or the whole ship."""
-        if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
-            if self.hulls.floods(w, pose, t):
-                self.flooded[w] = t
-        if ti.static(self.sinks):  # noqa: SIM102 (compiled only for ships that take in water)
-            if self.hulls.is_under(w, pose, t):
-                self.sunk[w] = t
+    def bear_water(self, w, mass, t):
+        """Note that a ship has sunk at t (s) if the water that has entered her, kg/m, is more than she can bear."""
+        if mass > self.reserve[w] and self.sunk[w] < 0.0:
+            self.sunk[w] = t
 
     @ti.func
     def follow(self, w, time, kick, dt):

@@ -101,7 +101,9 @@ class StaggeredShips(Ships):
                 self.state[w, POSE + k], self.state[w, VELOCITY + k] = self.heeled[w, k], 0.0
                 now[k] = 0.0
         pose, velocity = self.vector(self.pose, w), self.vector(self.velocity, w)
-        self.look_whether_lost(w, pose, t)
+        if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
+            if self.hulls.floods(w, pose, t):
+                self.flooded[w] = t
         force = self.felt(w, pose, velocity, now, load)
         for k in ti.static(range(3)):
             for n in ti.static(range(POINTS - 1, 0, -1)):

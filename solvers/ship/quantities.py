@@ -12,4 +12,6 @@ SERIES = (
     Quantity("capsized", "s", label="time at which the ship capsized", never=-1.0),
     Quantity("flooded", "s", label="time at which the ship flooded", never=-1.0),
 )
-OF_INFLOW = (Quantity("sunk", "s", label="time at which the ship was all under water", never=-1.0),)
+OF_INFLOW = (
+    Quantity("sunk", "s", label="time at which the ship sank, with more water aboard than she can bear", never=-1.0),
+)

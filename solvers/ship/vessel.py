@@ -13,6 +13,7 @@ from solvers.ship.motion import HEAVE, Ship, start
 
 LONGEST_INTERVAL = 1e-3  # s
 STEPS_A_PERIOD = 200  # of the ship's fastest oscillation, where no cargo asks for shorter steps
+FAR_DOWN = 1e4  # m: where all of a hull is under water
 NEAR = 1e-3  # of the search's step: where the search for an angle of loll begins
 SHORTEST_MEMORY = 0.02  # of the memory's shortest time scale: the Runge–Kutta error per interval is then below 1e-10
 
@@ -26,10 +27,10 @@ class Vessel:
     `release` (s). Until then it is heeled smoothly to `heel` (rad) about its axis, which moves only in heave, and only
     if the ship is free to heave. In calm water it rests at a roll of `rest` (rad), cargo and all. The ship has capsized
     when its roll leaves `limits` (rad), and floods when one of its `openings` (m, hull's frame) is below the local
-    water surface. One that `sinks`, since she takes in water, has sunk when all of her is below that surface. `height`
-    (m) is that of the hull's origin when upright, None: as the ship floats in equilibrium. With a `handover` (s) she
-    takes steps of that length with a load that is extrapolated (`motion.staggered_ships`); None: she responds to the
-    load of each instant (`motion.floating_ships`).
+    water surface. One that `sinks` takes in water, and has sunk when that is more than her `reserve`. `height` (m) is
+    that of the hull's origin when upright, None: as the ship floats in equilibrium. With a `handover` (s) she takes
+    steps of that length with a load that is extrapolated (`motion.staggered_ships`); None: she responds to the load of
+    each instant (`motion.floating_ships`).
     """
 
     ship: Ship
@@ -53,6 +54,12 @@ class Vessel:
         memory = self.ship.radiation.memory
         fastest = 0.0 if memory is None else np.abs(np.linalg.eigvals(memory.matrix)).max()
         return min(LONGEST_INTERVAL, SHORTEST_MEMORY / max(fastest, 1e-9))
+
+    @property
+    def reserve(self) -> float:
+        """Reserve buoyancy (kg/m): how much more mass she can take until she displaces all of her hull."""
+        section, density = self.ship.load.section, self.ship.load.water.density
+        return density * float(section.immersion(-FAR_DOWN, 0.0).area) - self.ship.body.mass
 
     @property
     def shortest_period(self) -> float:

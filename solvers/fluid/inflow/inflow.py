@@ -29,8 +29,8 @@ class Inflow:
 
     The weight and the impact of this water load the ship by her walls, as those of any water. Of the hull outside
     nothing changes: she is buoyant as if closed (added weight), and that the pressure is missing over an opening's area
-    is left out. Momentum and energy that particles bring are the sea's; the energy is accounted (`brought`, J on a slab
-    1 m thick).
+    is left out. She has sunk when what has entered is more than her reserve buoyancy. Momentum and energy that
+    particles bring are the sea's; the energy is accounted (`brought`, J on a slab 1 m thick).
 
     `due` (W, K) particles by each opening, `entered` (W, K) those that have entered less those that have left, `left`
     (W, tanks) those that wait, with their numbers in `stack`; `rate` (W, K) m³/s.
@@ -52,6 +52,8 @@ class Inflow:
         self.exact, self.volume = exact, fluid.water.spacing**2  # m², of a particle
         factor = [one.discharge * one.share * one.width for one in fluid.inlets]
         self.factor = own.holding("factor", np.array(factor), "inlet", exact)  # of ∫ √(2 g Δh) ds, to m² a second
+        share = [one.along / scene.vessels[0].length for one in fluid.inlets]
+        self.share = own.holding("share", np.array(share), "inlet", exact)
         self.lengths = np.array([one.along for one in fluid.inlets])
         self.waiting, self.fills = np.array(fluid.waiting), np.array(fluid.fills(len(tanks)))
         self.first = own.holding("first", np.array([0, *accumulate(self.fills)][:-1]), "room", ti.i32)
@@ -108,6 +110,7 @@ class Inflow:
             self.due[w, k] = self.due[w, k] + self.rate[w, k] * ti.cast(dt, self.exact) / self.cell()
             if ti.abs(self.due[w, k]) >= 1.0:
                 asks = 1
+        self.carrier.bear_water(w, self.aboard(w), self.clock[w])
         if asks > 0:
             self.lists.displacement[w * self.units.a_world] = NEVER
         return True
@@ -121,6 +124,14 @@ class Inflow:
     def area(self, w, room):
         """Area (m²) of the water in a room."""
         return self.still[room] + self.cell() * (self.waited[room] - self.left[w, room])
+
+    @ti.func
+    def aboard(self, w):
+        """Mass of the water that has entered, per metre of the ship (kg/m)."""
+        mass = ti.cast(0.0, self.exact)
+        for k in range(self.count):
+            mass += self.share[k] * self.entered[w, k]
+        return mass * ti.cast(self.constants.get("density"), self.exact) * self.cell()
 
     @ti.func
     def admit(self, w):

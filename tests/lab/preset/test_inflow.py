@@ -1,0 +1,63 @@
+"""Openings of ships in presets: what is refused, and what the solver is told."""
+
+import numpy as np
+import pytest
+
+from lab.assembly.scene import build
+from lab.base.errors import LabError
+from lab.preset.find import load
+from lab.recording.layout import names_of, tables_of
+
+OPEN = "ship/barge-open-hatch-quick"
+DRY = {"grains": False, "material": False}
+
+REFUSED = {
+    "inflow.hatch.points: an opening has two ends": {"inflow.hatch.points": [["0 mm", "140 mm"]]},
+    "inflow.hatch.points: its two ends are the same": {"inflow.hatch.points": [["0 mm", "140 mm"], ["0 mm", "140 mm"]]},
+    r"inflow.hatch.points: \[170 mm, 100 mm\] is under water at rest": {
+        "inflow.hatch.points": [["170 mm", "100 mm"], ["170 mm", "130 mm"]]
+    },
+    r"inflow.hatch.points: \[-110 mm, 150 mm\] is outside of the hull": {
+        "inflow.hatch.points": [["-110 mm", "150 mm"], ["0 mm", "140 mm"]]
+    },
+    'inflow.hatch.room: there is no tank "hold"; take tank or room': {"inflow.hatch.room": "hold"},
+    "inflow.hatch.room: this hold has grains": {"inflow.hatch.room": "tank"},
+    "inflow.hatch.length: it is longer than the room, 500 mm": {"inflow.hatch.length": "0.6 m"},
+    "inflow: water enters as particles": {"water.model": "frozen"},
+    "inflow: goes with water, and there is none": {"water": False},
+    "inflow.hatch.discharge": {"inflow.hatch.discharge": 0.0},
+}
+
+
+@pytest.mark.parametrize("sentence", REFUSED)
+def test_what_cannot_be_is_refused(sentence):
+    with pytest.raises(LabError, match=sentence):
+        load(OPEN, REFUSED[sentence])
+
+
+def test_a_room_has_a_place_for_each_particle_that_fills_it():
+    """It is empty at first, so that she floats as without it; so many squares of a spacing wait as it has area for."""
+    preset = load(OPEN, DRY).resolved
+    scene, _ = build(preset)
+    fluid, room = scene.fluid, np.array(preset.tanks["room"].corners)
+    area, spacing = float(np.prod(np.ptp(room, axis=0))), fluid.water.spacing
+    assert fluid.waiting == (0, int(area / spacing**2)) and not fluid.present.any()
+    assert scene.vessels[0].ship.body.mass == pytest.approx(1000.0 * 0.34 * 0.11)
+    assert scene.vessels[0].reserve == pytest.approx(1000.0 * 0.34 * 0.03)
+    assert scene.fluid.inlets[0].share == 1.0 and scene.fluid.inlets[0].room == 1
+
+
+def test_some_water_may_be_in_the_room():
+    preset = load(OPEN, {**DRY, "tanks.room.depth": "20 mm"}).resolved
+    fluid = build(preset)[0].fluid
+    assert pytest.approx(float(fluid.particles["volume"][0][fluid.present].sum()), rel=1e-9) == 0.02 * 0.32
+    whole = float(fluid.particles["volume"][0].sum())
+    assert whole == pytest.approx(0.115 * 0.32, abs=fluid.water.spacing**2)
+
+
+def test_its_quantities_are_recorded():
+    preset = load(OPEN).resolved
+    series = {quantity.name: quantity.per for quantity in tables_of(preset, False)["series"]}
+    assert series["sunk"] == "world" and series["inflow_volume"] == series["inflow_rate"] == "inlet"
+    assert names_of(preset)["inlet"] == ["hatch"]
+    assert "sunk" not in {quantity.name for quantity in tables_of(load("ship/barge-3dof").resolved, False)["series"]}
