@@ -61,6 +61,8 @@ def describe(
         rows += [("excitation", given.excitation), ("waves", _sea(waves, water))]
     if given.capsize:
         rows.append(("capsized", f"beyond {show(given.capsize, 'rad')}"))
+    if vessel.sinks:
+        rows.append(("sunk", f"with more than {vessel.reserve:.4g} kg/m of water in her, her reserve buoyancy"))
     rows += [
         (name.replace("_", " "), f"{show(angle, 'rad')}, in calm water at constant displacement")
         for name, angle in flooding_angles(given, vessel).items()

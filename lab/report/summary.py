@@ -116,13 +116,11 @@ def terminal_summary(
     made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
     lost = ship_end.losses_sentence(ship_end.ends(recording.series))
     title = f"{recording.preset.title} ({recording.name}): {status_of(recording)}{f'. {lost}' if lost else ''}"
-    lines = [one_line(title)]
-    lines += _aligned(rows)
+    lines = [one_line(title), *_aligned(rows)]
     if len(told) < len(values):
         lines.append(f"  and {count_of(len(values) - len(told), 'more number')} in the summary")
     lines += ["", f"  {_cost(recording)}", *([f"  {in_words(costs)}"] if costs else [])]
-    lines += _aligned(made)
-    lines += [f"  warning: {one_line(text)}" for text in (*warnings, *cautions(recording))]
+    lines += [*_aligned(made), *(f"  warning: {one_line(text)}" for text in (*warnings, *cautions(recording)))]
     return printable("\n".join(lines))
 
 

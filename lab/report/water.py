@@ -194,7 +194,9 @@ def cautions(recording: Recording) -> Iterator[str]:
 
 
 def _size(preset: Preset, water: given.Water) -> str:
-    return f"{show(water.spacing, 'm')} apart, {show(depth(preset), 'm')} deep, {show(preset.water.density, 'kg/m^3')}"
+    deep = "deep" if preset.pools[0].depth else "at most, none at first"
+    of_all = f"{show(depth(preset), 'm')} {deep}, {show(preset.water.density, 'kg/m^3')}"
+    return f"{show(water.spacing, 'm')} apart, {of_all}"
 
 
 def _sound(preset: Preset, water: given.Water) -> str:

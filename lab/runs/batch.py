@@ -248,15 +248,14 @@ class Batch:
         if "capsized" not in rows:
             return
         lost = np.any([rows[kind] >= 0.0 for kind in VERBS if kind in rows], axis=0)
-        over = [bool(lost[worlds].all()) for worlds in self._worlds()]
         slices, now = list(self._worlds()), self._simulation.time
-        frame = {} if pictured or not any(over) else self._frame(rows)
-        for out in reversed(range(len(over))):
-            if over[out]:
-                if frame:
-                    row = {name: values[slices[out]] for name, values in frame.items()}
-                    self._recorders[out].frame({"time": now, **row})
-                self._close(out, "complete")
+        over = [k for k, worlds in enumerate(slices) if lost[worlds].all()]
+        frame = {} if pictured or not over else self._frame(rows)
+        for out in reversed(over):
+            if frame:
+                row = {name: values[slices[out]] for name, values in frame.items()}
+                self._recorders[out].frame({"time": now, **row})
+            self._close(out, "complete")
 
     def _count_cost(self) -> None:
         """Share the wall-clock time since the last count among the runs by their work."""

@@ -169,7 +169,7 @@ class Fluid(Given):
     in_tanks: tuple[int, ...] = ()
     substeps: Annotated[int, NotOfBed()] = 1
     soft_multiple: Annotated[int, NotOfBed()] = 1
-    waiting: tuple[int, ...] = ()
+    waiting: Annotated[tuple[int, ...], NotOfBed()] = ()
     inlets: Annotated[tuple[Inlet, ...], NotOfBed()] = ()
 
     @property
