@@ -28,13 +28,14 @@ def wall_added_mass(scene, layers: WallLayers) -> np.ndarray:
     found = np.zeros((len(scene.vessels), 3, 3))
     if not len(found):
         return found
-    factor, ends = per_slab(scene), np.cumsum([0, *scene.fills])
+    factor, ends, present = per_slab(scene), np.cumsum([0, *scene.fills]), scene.fluid.present
     for w in range(len(found)):
         for tank, (first, end) in enumerate(pairwise(ends)):
             own = (layers.tanks == tank) & (layers.volumes > 0.0)
-            if end > first:
+            there = scene.fluid.particles[w, first:end][present[first:end]]
+            if len(there):
                 walls = layers.points[own], layers.volumes[own], layers.straight[own]
-                of_tank = _of_tank(scene.fluid.water, scene.fluid.particles[w, first:end], *walls)
+                of_tank = _of_tank(scene.fluid.water, there, *walls)
                 found[w] += factor[w, first] * of_tank
     return found
 
