@@ -29,8 +29,9 @@ START = 0.01  # of the movable grains
 
 
 def applies(recording: Recording) -> bool:
-    """The tank of the grains is open."""
-    return len(recording.preset.hold.open_edges) > 0
+    """The tank is open, and the grains are in it and not in a hull."""
+    grains = recording.preset.grains
+    return len(recording.open_edges) > 0 and (grains is None or grains.room is None)
 
 
 def measure(recording: Recording) -> dict[str, Value]:

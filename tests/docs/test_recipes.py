@@ -69,6 +69,7 @@ def overlap_at_rest():
     return MASS * GRAVITY / spring / RADIUS
 
 
+@pytest.mark.slow
 def test_a_law_a_motion_a_quantity_a_measure_and_a_preset(tree):
     found = numbers(tree, "run_mine.py")
     assert found["push"] == pytest.approx(0.2 * 0.1 * (0.2 - 0.05), rel=1e-9)

@@ -167,6 +167,7 @@ def test_a_signal_is_heeded_though_it_came_while_python_freed_an_object():
             signal.signal(number, handler)
 
 
+@pytest.mark.slow
 def test_batches_join_to_the_pictures_of_one_process(tmp_path):
     run, pieces = made(tmp_path / "run", frames=11), range(3)
     whole = render_recording(run, tmp_path / "whole", png=True, **SMALL)

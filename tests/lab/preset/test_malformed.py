@@ -333,7 +333,7 @@ def test_the_presets_to_be_mangled_are_valid(folder, sound):
 def test_a_mangled_preset_is_refused_in_one_sentence_or_can_be_built(folder, sound, times):
     passed = []
 
-    @examples(60 * times)
+    @examples(30 * times)
     @given(mangled(sound))
     def check(table):
         passed.append(tried(write(folder, table)))
@@ -346,7 +346,7 @@ def test_a_mangled_preset_is_refused_in_one_sentence_or_can_be_built(folder, sou
 def test_mangled_overrides_are_refused_in_one_sentence_or_can_be_built(folder, times):
     (folder / "rich.toml").write_text(RICH)
 
-    @examples(60 * times)
+    @examples(30 * times)
     @given(st.dictionaries(st.sampled_from(KEYS) | st.text(max_size=9), ODD_TREES, min_size=1, max_size=3))
     def check(overrides):
         tried(folder / "rich.toml", overrides)
@@ -356,7 +356,7 @@ def test_mangled_overrides_are_refused_in_one_sentence_or_can_be_built(folder, t
 
 @often
 def test_damaged_bytes_of_a_preset_are_refused_in_one_sentence_or_can_be_built(folder, sound, times):
-    @examples(60 * times)
+    @examples(30 * times)
     @given(st.sampled_from(sound), st.data())
     def check(text, data):
         (folder / "bytes.toml").write_bytes(damaged(data.draw, text.encode()))

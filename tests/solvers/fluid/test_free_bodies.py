@@ -105,6 +105,7 @@ def thin(dropped):
     run.close()
 
 
+@pytest.mark.slow
 def test_a_thin_wall_keeps_the_water_on_either_side_apart(thin):
     """The lift is that of hydrostatics to 1 %; the mass within stays, and its level to 0.02 spacings."""
     run, start = thin

@@ -83,6 +83,7 @@ def account(run: Simulation, steps: int) -> tuple[np.ndarray, np.ndarray, np.nda
     return tuple(np.array(rows).T)
 
 
+@pytest.mark.slow
 def test_what_the_walls_give_the_water_the_tank_loses(run):
     """The energy of an undamped tank and its water, losses counted, to 1e-4 of what passes between them."""
     lost, _, given = account(hung(run, scene_of(AXLE)), 1)
@@ -104,6 +105,7 @@ def test_the_account_of_energy_closes_with_the_step():
         assert middle / fine == pytest.approx(4.0, abs=0.6)
 
 
+@pytest.mark.slow
 def test_water_that_is_held_is_a_rigid_weight(run):
     """Upright, in a tank that is held, the moment about the axle is that of the water's weight, to 1e-3."""
     hung(run, scene_of(Axle((0.05, 0.3), 3.0, -3.0, release=10.0)))

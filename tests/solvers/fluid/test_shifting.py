@@ -40,6 +40,7 @@ def run() -> Simulation:
     run.close()
 
 
+@pytest.mark.slow
 def test_momentum_is_kept_to_rounding_and_its_moment_to_the_error_of_sums(run):
     momentum, moment = kept(run)
     while run.time < 1.0:
@@ -55,6 +56,7 @@ def test_momentum_is_kept_to_rounding_and_its_moment_to_the_error_of_sums(run):
     assert not shift[eigenvalue < 0.75].any()  # but at the surface
 
 
+@pytest.mark.slow
 def test_water_that_is_not_shifted_has_nothing_of_it(run):
     """No array that shifting needs, so that no kernel can hold a line of it; and what momentum needs goes alone."""
     arrays = {}

@@ -290,6 +290,7 @@ def test_a_wall_pushes_back_what_has_come_through_its_face(run, deep):
     assert (push[7:9, 0] > 0.0).all() and push[7, 1] > 0.0 > push[8, 1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "changes",
     [

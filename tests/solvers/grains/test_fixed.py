@@ -65,6 +65,7 @@ def restitution(scene: Scene, mass: float, speed: float) -> float:
     return rebound(0.5, 1.5 * pair.dissipative_time * (k / mass) ** 0.4 * speed**0.2)[0]
 
 
+@pytest.mark.slow
 def test_restitution_is_that_of_a_grain_and_an_immovable_one(struck):
     scene, mass, _, after, _, _ = struck
     for w, speed in enumerate(SPEEDS):
@@ -75,6 +76,7 @@ def test_restitution_is_that_of_a_grain_and_an_immovable_one(struck):
         assert after["velocity"][w, 1, 1] == pytest.approx(down, rel=1e-2), f"{speed} m/s"
 
 
+@pytest.mark.slow
 def test_a_sliding_impact_gives_friction_and_spin(struck):
     """Gross sliding: Δv_t = μ (1 + e) v_n and ω = (5/2) μ (1 + e) v_n / R (Maw, Barber and Fawcett 1976)."""
     scene, mass, _, after, _, _ = struck
@@ -87,11 +89,13 @@ def test_a_sliding_impact_gives_friction_and_spin(struck):
         assert abs(after["spin"][w, 1]) == pytest.approx(2.5 * lost / RADIUS, rel=2e-2), f"{speed} m/s"
 
 
+@pytest.mark.slow
 def test_fixed_grains_never_move(struck):
     *_, kept = struck
     assert np.array_equal(kept, np.tile(FIXED[:, :2], (len(SPEEDS), 1, 1)))
 
 
+@pytest.mark.slow
 def test_fixed_grains_do_not_count_in_observations(struck):
     """Centre of mass, energy and contacts are of the moving grains; the overlap of two fixed ones does not count."""
     _, mass, _, after, rows, _ = struck
@@ -104,6 +108,7 @@ def test_fixed_grains_do_not_count_in_observations(struck):
     assert after["position"].shape == (len(SPEEDS), 3, 2)
 
 
+@pytest.mark.slow
 def test_the_tanks_load_includes_forces_on_fixed_grains(struck):
     """The impulse on the tank is the momentum that the grains have lost."""
     _, mass, before, after, rows, _ = struck

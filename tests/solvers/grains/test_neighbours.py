@@ -266,6 +266,7 @@ def test_the_skin_follows_the_speed_and_no_contact_is_missed(usual):
     assert np.abs(positions[:60] - usual[0][:60]).max() < 1e-6 * RADIUS
 
 
+@pytest.mark.slow
 def test_history_survives_rebuilds(usual):
     """A skin so thin that the lists are made anew at nearly every step leads to the same motion."""
     looks = 60

@@ -59,6 +59,7 @@ def held(run, overlap: np.ndarray, share: np.ndarray | float) -> np.ndarray:
     return 2.0 * (share * force * run.dt) ** 2 / (0.4 * mass)
 
 
+@pytest.mark.slow
 def test_the_energy_of_a_pinch_never_rises(pinched):
     """But by what the dampers hold, and by the work of one step, by which springs with history are told late."""
     run = pinched[0]
@@ -70,6 +71,7 @@ def test_the_energy_of_a_pinch_never_rises(pinched):
     assert np.all(rises <= held(run, overlap, np.tan(np.radians(PINCHES[:, 1] / 2))) + late), rises / energy[0]
 
 
+@pytest.mark.slow
 def test_a_pinch_loses_what_its_law_takes(pinched):
     """What the dampers held is lost beyond it, and no more: at most the Coulomb cap's."""
     run = pinched[0]

@@ -63,11 +63,13 @@ def given_back(request):
     run.close()
 
 
+@pytest.mark.slow
 def test_an_undamped_spring_returns_its_slip_at_the_derived_step(given_back):
     """Within (ω_t Δt)²/4, 1 %, wherever in a step the contact begins."""
     assert given_back[0] == pytest.approx(kept(), abs=1e-2)
 
 
+@pytest.mark.slow
 def test_errors_of_history_fall_faster_than_first_order(given_back):
     """A quarter of the step, a seventh of the error at most: of second order but for the last step, where k_t ends.
 

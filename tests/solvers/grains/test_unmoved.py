@@ -31,6 +31,7 @@ def pressed(request):
     return scene, mass, seen, later, rest
 
 
+@pytest.mark.slow
 def test_contacts_before_the_first_step_follow_hertz(pressed):
     """Hertz (1882; Johnson 1985, eq. 4.22): F = (4/3) E* √R δ^(3/2), of energy (2/5) F δ."""
     scene, mass, seen, _, _ = pressed
@@ -46,12 +47,14 @@ def test_contacts_before_the_first_step_follow_hertz(pressed):
     assert seen["centre_of_mass"][..., 1] == pytest.approx([(7.0 * RADIUS - 2.0 * OVERLAP) / 3.0])
 
 
+@pytest.mark.slow
 def test_observing_changes_nothing(pressed):
     *_, later, rest = pressed
     for name in rest.keys() - {"wall_force"}:  # a mean since the last look
         assert later[name].tobytes() == rest[name].tobytes(), name
 
 
+@pytest.mark.slow
 def test_grains_do_not_answer_for_water_that_stopped_a_world():
     """Beside water they raise only if they are too fast; alone always."""
     run = simulation([[[0.0, RADIUS]]], RADIUS, box(0.05, 0.05), material(young=1e7), velocity=[[[SPEED, 0.0]]])

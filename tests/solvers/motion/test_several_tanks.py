@@ -85,6 +85,7 @@ def frozen(run: Simulation) -> Body:
     return Body(float(mass.sum()), tuple(centre), float((mass * (apart + 0.4 * RADIUS**2)).sum()))
 
 
+@pytest.mark.slow
 def test_a_ship_bears_the_load_of_each_tank(laden):
     """As one body of hull and both tanks' lying grains, each counted by its tank's length and thickness."""
     run, vessel, cargo = laden, laden.scene.vessels[0], frozen(laden)
@@ -105,6 +106,7 @@ def test_a_ship_bears_the_load_of_each_tank(laden):
     assert np.abs(np.interp(told, alone.time, alone.roll) - expected).max() > 0.05 * np.ptp(expected)
 
 
+@pytest.mark.slow
 def test_each_tank_bears_its_own_grains(laden):
     """The walls of each tank bear the weight of its grains, those of the empty one none."""
     run = laden

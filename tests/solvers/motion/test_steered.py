@@ -68,6 +68,7 @@ def start_places() -> np.ndarray:
     return np.array([[[-0.2, 3e-3], [0.0, 3e-3], [0.2, 3e-3]]])
 
 
+@pytest.mark.slow
 def test_a_change_of_friction_acts_on_existing_contacts(run):
     """Sliding in a tank that is pulled away: μ g, before and after (Coulomb)."""
     start = run.state()

@@ -157,6 +157,7 @@ def run() -> Iterator[Simulation]:
     made.close()
 
 
+@pytest.mark.slow
 def test_water_and_ship_work_on_each_other(run):
     """What she gives the walls the water gets; energy of the water is accounted for."""
     run.advance(round(0.3 / run.dt) + 1)  # she is let go
@@ -171,6 +172,7 @@ def test_water_and_ship_work_on_each_other(run):
     assert abs(missing) < 0.01 * (np.abs(row["water_work"]) + row["water_viscous"] + row["water_kinetic"])[0]
 
 
+@pytest.mark.slow
 def test_what_the_water_loses_the_ship_gains(run):
     """The load on the ship at each step is the momentum that the water loses in it, its weight aside, to rounding."""
     run.advance(round(0.5 / run.dt))
@@ -213,7 +215,7 @@ def test_grains_and_water_share_no_tank():
     from solvers.fluid.checks import refuse_scene
 
     with pytest.raises(Unavailable, match="give them tanks of their own"):
-        refuse_scene((10,), True)
+        refuse_scene((10,), 0)
 
 
 def test_a_load_that_is_extrapolated_drives_a_light_ship():

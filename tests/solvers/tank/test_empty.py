@@ -40,6 +40,7 @@ def in_waves(hull=BARGE) -> Vessel:
     return Vessel(Ship(BODY, load, DAMPED, AXIS, RollDamping(0.2, 0.3)), HOLD, laden=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "hull",
     [pytest.param(BARGE, id="section", marks=pytest.mark.slow), pytest.param(tapered(0.25, 0.30, 9), id="stations")],

@@ -195,6 +195,7 @@ def block():
     run.close()
 
 
+@pytest.mark.slow
 def test_worlds_at_rest_keep_their_load(block):
     """World 0 is at rest from the start; world 1 is thrown up and falls down again."""
     weight = block.grains.mass[0].sum() * G

@@ -220,6 +220,7 @@ def test_grains_on_a_floor_that_drops_at_three_g_fall_freely(machine):
     assert compared >= 8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("schedule", ["per-world", *SLOW])
 def test_a_plate_finds_grains_that_lie_still(schedule):
     """Nobody moves when the plate sets off, so that only its own way can tell that lists are old. A plate of 1 m/s that
@@ -246,6 +247,7 @@ def test_a_plate_finds_grains_that_lie_still(schedule):
     assert np.all(state["position"][0, :, 0] > -0.05 + 0.06 + 0.99 * RADIUS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("schedule", ["per-world", *SLOW])
 def test_grains_from_afar_meet(schedule):
     """Two lone grains come at each other across cells with nothing in them, a third at a wall: none is missed."""

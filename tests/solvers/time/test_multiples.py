@@ -106,6 +106,7 @@ def test_steps_are_longer_while_grains_are_slow(schedule):
     run.close()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("calm")
 def test_a_state_continues_bit_for_bit_between_steps_of_different_length():
     run = started(BASE, STRETCH, "per-world")

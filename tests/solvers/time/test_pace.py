@@ -58,6 +58,7 @@ def verlet(beats: int, step: float) -> np.ndarray:
 SLOW = pytest.mark.slow
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "schedule", ["per-world", pytest.param("per-band", marks=SLOW), pytest.param("per-grain", marks=SLOW)]
 )

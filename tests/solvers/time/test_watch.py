@@ -56,6 +56,7 @@ def told_time(said: str) -> float:
     return float(re.search(r"t = (\S+) s", said)[1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("grain", [0, 1, 2])
 @pytest.mark.parametrize("trouble", ["not a number", "too fast"])
 def test_a_bad_speed_stops_its_world_alone(run, trouble, grain):
