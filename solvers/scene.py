@@ -100,6 +100,11 @@ class Scene:
         return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
 
     @property
+    def is_long(self) -> bool:
+        """Whether the kernel of a step is long: that of grains in a floating hull, or of water that enters a ship."""
+        return bool(self.hold or (self.fluid and self.fluid.inlets))
+
+    @property
     def flows(self) -> bool:
         """Whether there are particles of a fluid that are moved one by one."""
         return self.fluid is not None and self.fluid.moved > 0

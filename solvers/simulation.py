@@ -66,8 +66,8 @@ class Simulation:
         )
         self.vectors = min((matter.lanes(scene.precision) for matter in scene.matters), default=wide.lanes())
         self.steps, self.room, self.among, self.skin = 0, 1, worlds, skin  # `among`: worlds at the start
-        # Short kernels; and of discs beside water, 1.4 times as fast so, but not with a hull: twice as long, or minutes
-        self.simple = not scene.matters or (not scene.hold and any(matter.simple for matter in scene.matters))
+        # Short kernels; and of discs beside water, 1.4 times as fast so, but not the longest ones, which take minutes
+        self.simple = not scene.matters or (not scene.is_long and any(matter.simple for matter in scene.matters))
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
         means = [quantity for quantity in self.sampler.quantities if quantity.mean]
