@@ -35,8 +35,8 @@ class Inlet:
     discharge: Annotated[float, Interval(gt=0, le=1), Doc("Discharge coefficient C_d.")] = 0.6
 
 
-class Leaking(Protocol):
-    """The sections of a preset that its openings follow from."""
+class Tanked(Protocol):
+    """The sections of a preset that its tanks and openings follow from."""
 
     tank: Tank
     tanks: dict[str, FurtherTank]
@@ -46,13 +46,13 @@ class Leaking(Protocol):
     inflow: dict[str, Inlet]
 
 
-def rooms_with_inflow(preset: Leaking) -> set[int]:
+def rooms_with_inflow(preset: Tanked) -> set[int]:
     """The numbers of the tanks that water may enter."""
     names = [FIRST, *preset.tanks]
     return {names.index(inlet.room) for inlet in preset.inflow.values() if inlet.room in names}
 
 
-def inlets_of(preset: Leaking) -> tuple[solved.Inlet, ...]:
+def inlets_of(preset: Tanked) -> tuple[solved.Inlet, ...]:
     """The openings as the solver takes them."""
     found, names = [], [FIRST, *preset.tanks]
     for inlet in preset.inflow.values():
@@ -63,12 +63,12 @@ def inlets_of(preset: Leaking) -> tuple[solved.Inlet, ...]:
     return tuple(found)
 
 
-def _length_of_room(preset: Leaking, number: int) -> float:
+def _length_of_room(preset: Tanked, number: int) -> float:
     """The length (m) of a tank along the ship."""
     return [preset.tank, *preset.tanks.values()][number].length or preset.ship.length or 1.0
 
 
-def check_inflow(preset: Leaking) -> None:
+def check_inflow(preset: Tanked) -> None:
     """Raise LabError, one sentence, for an opening that cannot be."""
     if not preset.inflow:
         return
@@ -81,7 +81,7 @@ def check_inflow(preset: Leaking) -> None:
             raise LabError(f"inflow.{name}.{key}: {fault}.")
 
 
-def _faults(preset: Leaking, inlet: Inlet) -> Iterator[tuple[str, str]]:
+def _faults(preset: Tanked, inlet: Inlet) -> Iterator[tuple[str, str]]:
     """The keys at fault of an opening, and why."""
     if len(inlet.points) != 2:
         yield "points", f"an opening has two ends (got {len(inlet.points)})"

@@ -1,32 +1,18 @@
 """All tanks of a preset: where they are in the plane, and the water in them."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import stands_out
-from lab.preset.sections.ship import Ship
-from lab.preset.sections.tank import FurtherTank, Tank, check_tank
-from lab.preset.sections.water.inflow import Inlet, check_inflow, rooms_with_inflow
-from lab.preset.sections.water.section import Water
+from lab.preset.sections.tank import FurtherTank, check_tank
+from lab.preset.sections.water.inflow import Tanked, check_inflow, rooms_with_inflow
 from lab.preset.units import show
 from solvers.fluid.start.packing import area_of, below
 from solvers.tank import tank as solved
 
 MOST_TANKS = 20
-
-
-class Tanked(Protocol):
-    """The sections of a preset that its tanks follow from."""
-
-    tank: Tank
-    tanks: dict[str, FurtherTank]
-    ship: Ship | None
-    water: Water | None
-    grains: object | None
-    inflow: dict[str, Inlet]
 
 
 @dataclass(frozen=True, eq=False)
