@@ -11,6 +11,7 @@ from solvers.grains.given import Grains
 from solvers.grains.timestep import SLOWEST
 from solvers.machine.limit import Limit
 from solvers.machine.marks import EachWorld, NotOfBed, in_one_launch, shared
+from solvers.machine.quantity import PLANE
 from solvers.matters import limits_of
 from solvers.motion.axle import Axle
 from solvers.motion.carrier import limits_of_carrier, shares_of_loads
@@ -18,6 +19,7 @@ from solvers.motion.contact_pairs import limits_of_contacts
 from solvers.ship.vessel import Vessel
 from solvers.tank.given import Given
 from solvers.tank.parts import Part
+from solvers.tank.solids.solid import Prism
 from solvers.tank.tank import BARE_THICKNESS, Tank
 
 Matter = TypeVar("Matter", bound=Given)
@@ -32,6 +34,7 @@ class Scene:
     - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
       by default all; `more_tanks` stand beside it, or are rooms of a part that floats free (`Tank`). Grains are in the
       first tank, or in such rooms if there are any.
+    - `solid`: what the outline stands for in space; None: the scene is plane.
     - `matters`: what the tanks hold, at most one of each kind of `solvers.matters`.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
@@ -56,6 +59,7 @@ class Scene:
     thickness: float | None = None
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
+    solid: Prism | None = None
     precision: str = "f64"
     schedule: str = "auto"
 
@@ -89,8 +93,8 @@ class Scene:
 
     @property
     def axes(self) -> int:
-        """Number of axes: two, those of the plane."""
-        return self.outline.shape[1]
+        """Number of axes: two, those of the plane, or three."""
+        return self.solid.axes if self.solid else PLANE
 
     @property
     def tanks(self) -> tuple[Tank, ...]:
@@ -179,7 +183,8 @@ class Scene:
     @property
     def span(self) -> float:
         """Largest distance (m) of a corner of a tank from the tank's origin."""
-        return float(max(np.linalg.norm(tank.outline, axis=1).max() for tank in self.tanks))
+        farthest = float(max(np.linalg.norm(tank.outline, axis=1).max() for tank in self.tanks))
+        return float(np.hypot(farthest, 0.5 * self.solid.along)) if self.solid else farthest
 
     def credible_speed(self) -> float:
         """Highest closing speed (m/s) to be expected: of a fall through the tank, or the tank's or a part's own.

@@ -20,7 +20,7 @@ from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.vessel import Vessel
 from solvers.tank.matter import Matter
-from solvers.tank.walls import Walls
+from solvers.tank.solids.prism import make_walls
 from solvers.time import kept, watch
 from solvers.time.changes import up_to_change
 from solvers.time.clock import Clock
@@ -81,7 +81,7 @@ class Simulation:
         self.arrays = arrays = State(scene.precision)
         self.carrier = make_carrier(arrays, scene, self.dt)
         self.parts = make_pieces(arrays, scene, self.carrier, self.dt)
-        self.walls = Walls(arrays, scene.tanks, self.parts, scene.apart)
+        self.walls = make_walls(arrays, scene, self.parts)
         context = context_of(self)
         matters = made(scene, context)
         self.matters = {matter.name: matter for matter in matters}
@@ -92,7 +92,7 @@ class Simulation:
         sequence = Sequence(matters, self.carrier, self.parts)
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, self.parts, loads)
+        self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, self.parts, loads, scene.axes)
         arrays.finish()
 
     @property
@@ -220,7 +220,7 @@ class Simulation:
         return rows
 
     def loads(self) -> np.ndarray:
-        """Force y, z (N) and moment (N m) of the cargo on each piece of the tank, (W, pieces, 3), as last observed.
+        """Forces (N) and moments (N m) of the cargo on each piece of the tank, (W, pieces, freedoms), as last observed.
 
         The pieces are the walls of each tank, then the parts, then the fixed grains if there are any.
         """

@@ -241,7 +241,7 @@ class Diagnostics:
             out = True
             shift = self.walls.shift(w, 0.0)
             for feature in range(self.walls.features):
-                if self.walls.near(feature, shift, y, z, near):
+                if self.walls.near(feature, shift, near, y, z):
                     out = False
         return out
 

@@ -7,6 +7,7 @@ import taichi as ti
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.state import FAR, GrainState
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.machine.wide import minus
@@ -67,7 +68,7 @@ class Contacts:
         for block in range(pairs.blocks(u)):
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
-            normal, distance, approach = self.geometry(g, i, j, reach, pairs.lanes)
+            normal, distance, inverse, approach = self.geometry(g, i, j, reach, pairs.lanes)
             velocity = self.differences(g.now, i, j, pairs.lanes)
             spin_i = [gathered(field, i, pairs.lanes) for field in ti.static(g.spin_now)]
             spin_j = [gathered(field, j, pairs.lanes) for field in ti.static(g.spin_now)]
@@ -75,8 +76,10 @@ class Contacts:
             lever_j = distance - lever_i
             rate = minus(dot(velocity, normal))
             surfaces = [lever_i * spin_i[k] + lever_j * spin_j[k] for k in turns]
-            slip, turning = tangent.slip(velocity, normal, surfaces), [spin_i[k] - spin_j[k] for k in turns]
-            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, turning, None, dt)
+            slip = tangent.slip(velocity, normal, surfaces)
+            turning = tangent.across([spin_i[k] - spin_j[k] for k in turns], normal)
+            way = tangent.way(velocity, normal, inverse, spin_i, spin_j, dt)
+            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, turning, way, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.cohesive_force(pairs, u, block, approach, rate, dt)
             force, arm, back = tangent.force(normal, fn, ft), tangent.arm(normal, ft), [minus(roll[k]) for k in turns]
@@ -148,7 +151,7 @@ class Contacts:
 
     @ti.func
     def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
-        """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
+        """Normals (towards the first grains), distances (m), one over these, and overlaps (m; negative: gaps)."""
         if ti.static(g.mixed):
             # The difference of squares in 64 bits: an overlap of 1e-7 m then has full 32-bit precision. Lane by lane,
             # since real vectors cannot change their precision.
@@ -161,12 +164,12 @@ class Contacts:
             inverse = 1.0 / distance
             more = ti.Vector([ti.cast(whole[k] * whole[k] - square[k], g.real) for k in lanes])
             along = [ti.Vector([ti.cast(apart[k][a], g.real) for k in lanes]) for a in axes]
-            return [along[a] * inverse for a in axes], distance, more / (reach + distance)
+            return [along[a] * inverse for a in axes], distance, inverse, more / (reach + distance)
         else:
             apart = self.differences(g.place, i, j, count)
             distance = ti.sqrt(dot(apart, apart))
             inverse = 1.0 / distance
-            return [apart[a] * inverse for a in ti.static(range(g.axes))], distance, reach - distance
+            return [apart[a] * inverse for a in ti.static(range(g.axes))], distance, inverse, reach - distance
 
     @ti.func
     def differences(self, fields: ti.template(), i, j, count: ti.template()):
@@ -181,7 +184,7 @@ class Contacts:
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
-            gap, radius = self.walls.gap(feature, shift, g.place[0][w, i], g.place[1][w, i]), g.radius[w, i]
+            gap, radius = self.walls.gap(feature, shift, *g.at(w, i)), g.radius[w, i]
             normal = [ti.cast(gap[1 + a], g.real) for a in ti.static(range(g.axes))]
             approach = ti.cast(-FAR, g.real)
             if gap[0] > 0.0:
@@ -196,15 +199,34 @@ class Contacts:
             spin = [field[w, i] for field in ti.static(g.spin_now)]
             slip = tangent.slip(velocity, normal, [lever * spin[k] for k in turns])
             slips = [ti.Vector([slip[k]]) for k in turns]
-            turning = [ti.Vector([spin[k] - self.walls.rate(feature, shift)]) for k in turns]
+            turned = self.walls.rate(feature, shift)
+            rolling = tangent.across([spin[k] - turned[k] for k in turns], normal)
+            turning = [ti.Vector([rolling[k]]) for k in turns]
+            way = self.way_on_wall(normal, spin, turned, dt)
             met = ti.Vector([approach]), ti.Vector([rate])
-            fn, ft, roll = self.laws.forces(WALL, contacts, u, p, *met, slips, turning, None, dt)
+            fn, ft, roll = self.laws.forces(WALL, contacts, u, p, *met, slips, turning, way, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.cohesive_force(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
             shear = [ft[k][0] for k in turns]
             torque = tangent.torque(lever, tangent.arm(normal, shear), [roll[k][0] for k in turns])
             self.push_off(g, w, i, u, feature, tangent.force(normal, fn[0], shear), torque, load)
         self.book_walls(u, load, dt)
+
+    @ti.func
+    def way_on_wall(self, normal: ti.template(), spin: ti.template(), turned: ti.template(), dt):
+        """How a contact with a wall has turned, as `tangent.carried` takes it, a lane wide.
+
+        The normal of a flat wall swings with the wall alone; that of an edge or a round one also with the grain. Either
+        is small in a step, and what is remembered is laid across the new normal with its size kept.
+        """
+        if ti.static(self.grains.axes == PLANE):
+            return tangent.NO_WAY
+        else:
+            axes = ti.static(range(self.grains.axes))
+            none = ti.Vector([0.0 * normal[0]])
+            along = [ti.Vector([normal[a]]) for a in axes]
+            both = [ti.Vector([spin[a] + turned[a]]) for a in axes]
+            return [along, [none for _ in axes], 0.5 * dt * dot(both, along)]
 
     @ti.func
     def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
@@ -216,7 +238,7 @@ class Contacts:
     @ti.func
     def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
         """Place (m) of contact p of a grain with a wall, its elastic force (N) on the grain, overlap (m)."""
-        gap = self.walls.gap(feature, shift, g.place[0][w, i], g.place[1][w, i])
+        gap = self.walls.gap(feature, shift, *g.at(w, i))
         overlap = ti.select(gap[0] > 0.0, ti.cast(g.radius[w, i] - gap[0], g.real), ti.cast(0.0, g.real))
         return self.press_along(g, contacts, w, i, u, p, overlap, ti.Vector([gap[1 + a] for a in range(g.axes)]))
 
@@ -251,7 +273,7 @@ class Contacts:
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i = contacts.first_of(u, p)
-            gap = self.walls.gap(contacts.second_of(u, p), shift, g.place[0][w, i], g.place[1][w, i])
+            gap = self.walls.gap(contacts.second_of(u, p), shift, *g.at(w, i))
             if 0.0 < gap[0] < g.radius[w, i]:
                 overlap = ti.cast(g.radius[w, i] - gap[0], g.real)
                 touching += 1.0

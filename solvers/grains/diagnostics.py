@@ -77,7 +77,7 @@ class Diagnostics:
         sums = [ti.cast(0.0, self.exact) for _ in range(self.numbers)]
         sums[ESCAPED] = NEVER
         for i in range(chunk * CHUNK, ti.min(g.mobile, (chunk + 1) * CHUNK)):
-            inside = self.walls.holds(g.place[0][w, i], g.place[1][w, i])
+            inside = self.walls.holds(*g.at(w, i))
             if ti.static(self.may_leave):
                 if not inside:
                     g.spilled[w, i] = 1.0
@@ -102,7 +102,7 @@ class Diagnostics:
     @ti.func
     def follows(self, g: ti.template(), w, i):
         """Whether a grain is so near the tank that it is followed though it has left."""
-        return self.walls.follows(g.place[0][w, i], g.place[1][w, i])
+        return self.walls.follows(*g.at(w, i))
 
     @ti.func
     def sum_world(self, w, time):

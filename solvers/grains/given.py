@@ -26,8 +26,8 @@ class Grains(Given):
     - `normal`, `tangential`, `rolling`, `cohesion`: names of the laws; `stiffness_scale`: the factor on Young's moduli.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
     - `fixed` (k, axes + 1): place and radius in m of grains that never move.
-    - At the start: `start_speed` (m/s), highest closing speed of grains and walls; `velocity` (W, n, 2) m/s, `spin`
-      (W, n) rad/s, None: at rest.
+    - At the start: `start_speed` (m/s), highest closing speed of grains and walls; `velocity` (W, n, axes) m/s, `spin`
+      (W, n) rad/s, in space (W, n, 3), None: at rest.
     - `integrator`: its name; `base_share`: see `share_to_lengthen`.
     """
 
@@ -54,7 +54,9 @@ class Grains(Given):
 
     def __post_init__(self):
         self.radius = np.atleast_2d(np.asarray(self.radius, dtype=np.float64))
-        self.fixed = np.asarray(self.fixed, dtype=np.float64).reshape(-1, 3)
+        self.fixed = np.asarray(self.fixed, dtype=np.float64)
+        if self.fixed.ndim < 2:
+            self.fixed = self.fixed.reshape(-1, 3)
         self.grain, self.wall = self._a_world(self.grain), self._a_world(self.wall)
         if self.sizes is None:
             self.sizes = float(self.radius.min()), float(self.radius.max())

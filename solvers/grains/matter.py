@@ -16,6 +16,7 @@ from solvers.grains.state import GrainState
 from solvers.grains.timestep import calm_speed
 from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_metre
 from solvers.ship.body import Body
@@ -197,10 +198,10 @@ class GrainMatter(Matter):
         self.numbering.ordered = position.copy()
 
     def launch(self, velocity: np.ndarray | None, spin: np.ndarray | None) -> None:
-        """Set the grains' velocities (W, n, axes) m/s and spins (W, n) rad/s; None: at rest."""
+        """Set the grains' velocities (W, n, axes) m/s and spins rad/s, (W, n), in space (W, n, 3); None: at rest."""
         shape = self.scene.grains.radius.shape
         velocity = np.zeros((*shape, self.grains.axes)) if velocity is None else velocity
-        spin = np.zeros(shape) if spin is None else spin
+        spin = np.zeros((*shape, self.grains.turns)) if spin is None else spin
         self.grains.launch(*(self.numbering.in_solver_order(values) for values in (velocity, spin)))
         self.mover.rest()
         self.load.forget()
@@ -255,7 +256,7 @@ class GrainMatter(Matter):
 
     def as_rigid(self) -> list[Body]:
         """The grains of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
-        place, mass = self.grains.read()["position"], self.numbering.in_solver_order(self.grains.mass)
+        place, mass = self.grains.read()["position"][..., :PLANE], self.numbering.in_solver_order(self.grains.mass)
         share = per_metre(self.scene, place)
         own = share / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
         mass = share * mass

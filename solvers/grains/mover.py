@@ -4,8 +4,11 @@ import taichi as ti
 
 from solvers.grains.shapes.pose import towards
 from solvers.grains.state import GrainState
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
 from solvers.machine.units import Units
+
+RATE, RISE = 2, 3  # of the tank's frame
 
 
 @ti.data_oriented
@@ -72,17 +75,20 @@ class Mover:
     def felt(self, g: ti.template(), w, i, body: ti.template()):
         """What grain i feels of the tank's motion: accelerations (m/s²) along the axes, and of its spin (1/s²), lists.
 
-        In the frame of `body` = (b, φ̇, φ̈) it feels b − φ̈ × r + φ̇² r − 2 φ̇ × u, and its spin changes by −φ̈. b has
-        an entry an axis; the tank turns in the plane alone, about x.
+        In the frame of `body` = (b_y, b_z, φ̇, φ̈) it feels b − φ̈ × r + φ̇² r − 2 φ̇ × u, with φ̇ along x: the tank moves
+        in the plane and turns about x alone. Its spin s relative to the tank changes by −φ̈ − φ̇ × s; in the plane the
+        last is zero.
         """
-        b = [body[a] for a in ti.static(range(g.axes))]
+        b = [body[a] if ti.static(a < PLANE) else ti.cast(0.0, g.real) for a in ti.static(range(g.axes))]
         spin_up = [ti.cast(0.0, g.real) for _ in ti.static(range(g.turns))]
         if ti.static(self.rotating):
             y, z = ti.cast(g.place[0][w, i], g.real), ti.cast(g.place[1][w, i], g.real)
-            rate, rise = body[g.axes], body[g.axes + 1]
+            rate, rise = body[RATE], body[RISE]
             b[0] += rise * z + rate * (rate * y + 2.0 * g.now[1][w, i])
             b[1] += -rise * y + rate * (rate * z - 2.0 * g.now[0][w, i])
-            spin_up[0] = -rise
+            spin_up[g.turns - 1] = -rise
+            if ti.static(g.axes > PLANE):
+                spin_up[0], spin_up[1] = rate * g.spin_now[1][w, i], -rate * g.spin_now[0][w, i]
         return b, spin_up
 
     @ti.func

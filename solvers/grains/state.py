@@ -123,6 +123,11 @@ class GrainState:
         return list({id(field): field for fields in held for field in fields if isinstance(field, ti.Field)}.values())
 
     @ti.func
+    def at(self, w, i):
+        """The place (m) of grain i, a list with an entry for each axis."""
+        return [field[w, i] for field in ti.static(self.place)]
+
+    @ti.func
     def push(self, w, i, force: ti.template(), torque):
         """Add a force (N) and torque (N m), lists, on grain i. Written out: Taichi takes `+=` on a field as atomic."""
         for a in ti.static(range(self.axes)):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import taichi as ti
 
-from solvers.machine.quantity import parted, places
+from solvers.machine.quantity import PLANE, freedoms, parted, places
 from solvers.machine.state import Axis, State
 from solvers.motion.free import NOT_FREE
 from solvers.tank import quantities as tank
@@ -24,10 +24,15 @@ class Sampler:
     force is zero. `quantities` are the numbers' declarations, and `at` has the column in which each begins.
     """
 
-    def __init__(self, arrays: State, worlds: int, pieces: int, carrier, parts: Pieces, loads: Sequence[Load]):
+    def __init__(
+        self, arrays: State, worlds: int, pieces: int, carrier, parts: Pieces, loads: Sequence[Load], axes: int = PLANE
+    ):
         self.worlds, self.carrier, self.parts, self.loads = worlds, carrier, parts, tuple(loads)
         self.exact, self.pieces = arrays.exact, pieces
-        self.quantities = tank.SERIES
+        named = freedoms(axes)
+        self.freedoms = len(named)
+        self.moved = tuple(named.index(name) for name in freedoms(PLANE))  # those in which carriers move
+        self.quantities = tuple(one.within(axes) for one in tank.SERIES)
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
         own, world = arrays.under("sampler"), Axis("world", worlds)
@@ -36,7 +41,7 @@ class Sampler:
             hold = parts.bodies.hold
             self.carrying = parts.bodies.parts[hold.body]
             self.aboard = own.holding("aboard", hold.of_pieces, "piece", ti.i32)  # of the part with that number
-        each = world, Axis("piece", self.pieces), Axis("component", 3)
+        each = world, Axis("piece", self.pieces), Axis("component", self.freedoms)
         (self.on_pieces,) = own.reals(each, "on_pieces", kind=arrays.exact, kept=False)
 
     def read_and_reset(self, time: float, since: float) -> dict[str, np.ndarray]:
@@ -53,14 +58,14 @@ class Sampler:
     @ti.func
     def sample_world(self, w, time, since):
         for piece in range(self.pieces):
-            for k in ti.static(range(3)):
+            for k in ti.static(range(self.freedoms)):
                 self.on_pieces[w, piece, k] = 0.0
-        total = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
+        total = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(self.freedoms))])
         for m in ti.static(range(len(self.loads))):
             for u in range(w * self.loads[m].units.a_world, (w + 1) * self.loads[m].units.a_world):
                 for piece in range(self.pieces):
                     impulse = self.loads[m].read_and_reset(u, piece)
-                    for k in ti.static(range(3)):
+                    for k in ti.static(range(self.freedoms)):
                         mean = impulse[k] / ti.cast(since, self.exact)
                         self.on_pieces[w, piece, k] = self.on_pieces[w, piece, k] + mean
                     if self.bears(w, piece):
@@ -68,10 +73,12 @@ class Sampler:
         pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
         if ti.static(self.carrier.moving):
             pose = self.carrier.kinematics(w, time)
-        for k in ti.static(range(3)):
-            self.rows[w, self.at.pose + k] = pose[k]
-            self.rows[w, self.at.pose_rate + k] = pose[3 + k]
+        for k in ti.static(range(self.freedoms)):
+            self.rows[w, self.at.pose + k], self.rows[w, self.at.pose_rate + k] = 0.0, 0.0
             self.rows[w, self.at.wall_force + k] = total[k] / ti.cast(since, self.exact)
+        for k, own in ti.static(enumerate(self.moved)):
+            self.rows[w, self.at.pose + own] = pose[k]
+            self.rows[w, self.at.pose_rate + own] = pose[3 + k]
 
     @ti.func
     def bears(self, w, piece):

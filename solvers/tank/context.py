@@ -8,6 +8,7 @@ from solvers.machine.state import Scope, State
 from solvers.machine.units import Units
 from solvers.tank.load import Load
 from solvers.tank.pieces import Pieces
+from solvers.tank.solids.prism import PrismWalls
 from solvers.tank.walls import Walls
 
 
@@ -28,7 +29,7 @@ class Context:
     axes: int
     bands: int
     per_particle: bool
-    walls: Walls
+    walls: Walls | PrismWalls
     parts: Pieces
     pieces: int
     shares: np.ndarray | None

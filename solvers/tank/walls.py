@@ -15,6 +15,7 @@ from solvers.tank.tank import Tank
 Y, Z, ALONG_Y, ALONG_Z, LENGTH, TWO_SIDED, PART = range(7)
 AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # columns that in a corner's row hold the direction of the segment after it
 BEYOND = 0.5  # margin round an open tank in which spilled grains are followed, in its own width and height
+NOWHERE = 1e30  # m, the gap of a point that does not face a feature
 CHIMNEY = 5.0  # height above the mouth at which a grain still counts as in the tank, in the tank's size
 
 
@@ -70,7 +71,10 @@ class Walls:
         return self._box(self.within)
 
     def _box(self, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        lower, upper = corners.min(axis=0), corners.max(axis=0)
+        return self.margined(corners.min(axis=0), corners.max(axis=0))
+
+    def margined(self, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Corners (m) of a box round a tank, with a margin if it is open."""
         margin = BEYOND * (upper - lower) if self.open else 0.0
         return lower - margin, upper + margin
 
@@ -134,14 +138,14 @@ class Walls:
 
     @ti.func
     def rate(self, feature, shift: ti.template()):
-        """Rate (rad/s) at which a feature turns in the tank's frame."""
+        """Rate (rad/s) at which a feature turns in the tank's frame, a list as of all rotations."""
         rate = ti.cast(0.0, self.real)
         if ti.static(self.turning):
             part = ti.cast(self.table[feature, PART], ti.i32)
             for p in ti.static(range(self.parts)):
                 if part == p:
                     rate = shift[ti.static(self.moved.size * p + RATE)]
-        return rate
+        return [rate]
 
     @ti.func
     def gap(self, feature, shift: ti.template(), y, z):
@@ -160,20 +164,20 @@ class Walls:
                 if self.table[feature, TWO_SIDED] > 0.0 and distance < 0.0:
                     distance, normal_y, normal_z = -distance, -normal_y, -normal_z
             if along < 0.0 or along > self.table[feature, LENGTH]:
-                distance = 1e30
+                distance = NOWHERE
         else:
             beyond = py * self.table[feature, AFTER_Y] + pz * self.table[feature, AFTER_Z]
             distance = ti.sqrt(py * py + pz * pz)
             normal_y, normal_z = py / distance, pz / distance
             if along <= 0.0 or beyond >= 0.0:
-                distance = 1e30
+                distance = NOWHERE
         if ti.static(self.turning):
             normal = self.turned(feature, shift, normal_y, normal_z)
             normal_y, normal_z = normal[0], normal[1]
         return ti.Vector([distance, normal_y, normal_z])
 
     @ti.func
-    def near(self, feature, shift: ti.template(), y, z, reach):
+    def near(self, feature, shift: ti.template(), reach, y, z):
         """Whether a point is within `reach` (m) of a wall feature, on either side."""
         point = self.from_start(feature, shift, y, z)
         py, pz = point[0], point[1]

@@ -3,6 +3,7 @@
 import numpy as np
 
 from solvers.grains.materials import Material
+from solvers.machine.quantity import PLANE
 from solvers.simulation import Simulation
 from tests.oracles.given import scene_of
 
@@ -21,12 +22,13 @@ def box(width: float, height: float) -> np.ndarray:
 
 
 def simulation(position, radius, outline, grain=None, wall=None, velocity=None, spin=None, threads=1, **scene):
-    """A simulation of grains at `position` (W, n, 2) with `radius` (n,) or (W, n), moving as given."""
+    """A simulation of grains at `position` (W, n, axes) with `radius` (n,) or (W, n), moving as given."""
     position = np.asarray(position, dtype=float)
     worlds, count = position.shape[:2]
     grain = grain or material()
     velocity = np.zeros_like(position) if velocity is None else np.broadcast_to(velocity, position.shape)
-    spin = np.zeros((worlds, count)) if spin is None else np.broadcast_to(spin, (worlds, count))
+    turns = (worlds, count) if position.shape[2] == PLANE else (worlds, count, 3)
+    spin = np.zeros(turns) if spin is None else np.broadcast_to(spin, turns)
     scene.setdefault("start_speed", float(np.abs(velocity).max()))
     radius = np.broadcast_to(radius, (worlds, count))
     made = Simulation(scene_of(radius, outline, grain, wall or grain, **scene), position, threads)

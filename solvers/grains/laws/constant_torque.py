@@ -7,7 +7,7 @@ from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus
 from solvers.space.extremes import greater, lesser
-from solvers.space.tangent import capped
+from solvers.space.tangent import capped, remembered
 
 TURNING = 1e-3  # rad/s, where the ramp ends: under the full torque a 3 mm grain creeps 5 mm an hour
 SMALLEST_TORQUE = 1e-30  # N m; keeps the division finite in contacts without normal force
@@ -51,7 +51,7 @@ class ConstantTorque:
         damping = cap * (1.0 / TURNING)
         at_once = lesser(damping, PROMPT * limit)
         turns = ti.static(range(len(turning)))
-        before = [contacts.rolling_followed[k][w, block] for k in turns]
+        before = remembered(contacts.rolling_followed, w, block, way)
         lag = lagging(damping - at_once, share, turning, before, cap)
         for k in ti.static(turns):
             contacts.rolling_followed[k][w, block] = lag[k]

@@ -11,6 +11,7 @@ from solvers.machine.wide import entry
 from solvers.space.axes import dot
 from solvers.space.extremes import within
 from solvers.space.impact import dragged, over_the_step, stretched
+from solvers.space.tangent import remembered
 
 
 @ti.data_oriented
@@ -63,8 +64,8 @@ class CundallStrack:
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, spring = c[0] * normal, contacts.shear_spring[w, block]
         turns = ti.static(range(len(slip)))
-        sliding = [over_the_step(slip[k], contacts.sliding[k][w, block], self.integrator.ahead) for k in turns]
-        before = [contacts.stretched[k][w, block] for k in turns]
+        slid, before = remembered(contacts.sliding, w, block, way), remembered(contacts.stretched, w, block, way)
+        sliding = [over_the_step(slip[k], slid[k], self.integrator.ahead) for k in turns]
         held = stretched(before, spring, root * root, rate, slip, sliding, cap, dt)
         for k in ti.static(turns):
             contacts.stretched[k][w, block] = held[k]

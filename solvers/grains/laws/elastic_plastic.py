@@ -10,7 +10,7 @@ from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
 from solvers.machine.wide import entry, minus
 from solvers.space.axes import dot
-from solvers.space.tangent import capped
+from solvers.space.tangent import capped, remembered
 
 
 @ti.data_oriented
@@ -60,7 +60,8 @@ class ElasticPlastic:
         cap = contacts.rolling_radius[w, block] * normal
         spring, dashpot = contacts.rolling_spring[w, block], contacts.rolling_dashpot[w, block]
         turns = ti.static(range(len(turning)))
-        wound = capped([contacts.wound[k][w, block] + spring * turning[k] * dt for k in turns], cap)
+        before = remembered(contacts.wound, w, block, way)
+        wound = capped([before[k] + spring * turning[k] * dt for k in turns], cap)
         for k in ti.static(turns):
             contacts.wound[k][w, block] = wound[k]
         return capped([minus(wound[k]) - dashpot * turning[k] for k in turns], cap)

@@ -7,7 +7,7 @@ from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
 from solvers.machine.wide import minus
 from solvers.space.extremes import greater, lesser
-from solvers.space.tangent import capped, length
+from solvers.space.tangent import capped, length, remembered
 
 
 @ti.data_oriented
@@ -51,7 +51,8 @@ class HaffWerner:
         turns = ti.static(range(len(slip)))
         kept = relieved(root, rate, dt)
         fast = [at_once * slip[k] for k in turns]
-        before = [contacts.followed[k][w, block] * kept for k in turns]
+        followed = remembered(contacts.followed, w, block, way)
+        before = [followed[k] * kept for k in turns]
         room = greater(cap - length(fast), 0.0)
         lag = lagging(c[1] - at_once, share, slip, before, room)
         for k in ti.static(turns):

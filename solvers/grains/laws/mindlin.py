@@ -12,7 +12,7 @@ from solvers.machine.wide import entry
 from solvers.space.axes import dot
 from solvers.space.extremes import greater, lesser, within
 from solvers.space.impact import dragged, over_the_step
-from solvers.space.tangent import capped
+from solvers.space.tangent import capped, remembered
 
 RESOLVED = 0.09  # (ω_t Δt)², for a slip right to 1.2 %
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
@@ -31,7 +31,7 @@ class Mindlin:
     touch, where k_t ~ √ξ begins.
 
     Limits: no micro-slip: the contact sticks as a whole until all of it slides (Mindlin and Deresiewicz 1953 have rings
-    that slide before). In space S would have to be turned with the contact.
+    that slide before).
 
     Units: F_t, F_n and S N, u_s m/s, k_t N/m, G* Pa, R_eff and ξ m, A s, μ a pure number.
     """
@@ -78,14 +78,15 @@ class Mindlin:
         before, now = greater(contacts.root_before[w, block], SMALLEST_ROOT), greater(root, SMALLEST_ROOT)
         begins, deeper = root * root < rate * dt, greater(root - before, 0.0)
         turns = ti.static(range(len(slip)))
-        sliding = [over_the_step(slip[k], contacts.sliding[k][w, block], self.integrator.ahead) for k in turns]
+        slid, stretched = remembered(contacts.sliding, w, block, way), remembered(contacts.stretched, w, block, way)
+        sliding = [over_the_step(slip[k], slid[k], self.integrator.ahead) for k in turns]
         # The mean of √ξ over the step, which ended here, or since first touch, over the present one.
         more = ti.select(begins, root * root, 0.0 - deeper * (now + before + before))
         more = more / ti.select(begins, 1.5 * rate * dt, 3.0 * now * (now + before))
         share = ti.select(begins, more, 1.0 + more)
         wound = [stiff * (share * sliding[k] * dt) for k in turns]
         kept = lesser(root / before, 1.0)
-        held = capped([contacts.stretched[k][w, block] * kept + wound[k] for k in turns], cap)
+        held = capped([stretched[k] * kept + wound[k] for k in turns], cap)
         for k in ti.static(turns):
             contacts.stretched[k][w, block] = held[k]
             contacts.sliding[k][w, block] = ti.select(root > 0.0, sliding[k], 0.0 * sliding[k])

@@ -152,7 +152,7 @@ class Candidates:
                 self.wall_first[u, i - start] = found
                 reach = g.reach[w, i] + self.farthest[1]
                 for feature in range(self.walls.features):
-                    if self.walls.near(feature, shift, g.place[0][w, i], g.place[1][w, i], reach):
+                    if self.walls.near(feature, shift, reach, *g.at(w, i)):
                         self.feature[u, ti.min(found, self.wall_capacity - 1)] = feature
                         found += 1
             for k in range(end - start, self.units.size + 1):

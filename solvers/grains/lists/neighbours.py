@@ -179,7 +179,7 @@ class Neighbours:
                 if ti.static(self.walled):
                     feature = self.candidates.feature[u, k]
                 # A contact may begin when a grain slides past a segment's end, so grains beyond it are listed too.
-                if self.walls.near(feature, shift, self.grains.place[0][w, i], self.grains.place[1][w, i], reach):
+                if self.walls.near(feature, shift, reach, *self.grains.at(w, i)):
                     found = self.list_contact(self.grains, u, found, i, feature, shift, dt)
         for k in range(end - start, self.units.size + 1):
             self.contacts.first[u, k] = found

@@ -18,6 +18,7 @@ from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.space.impact import linear_restitution
+from solvers.space.tangent import NO_WAY
 from tests.oracles.axes import axes
 from tests.oracles.scenes import material
 
@@ -89,7 +90,7 @@ class Driven:
                 approach, rate = path[k, 0] * first + APART * (1.0 - first), path[k, 1] + 0.0 * first
                 slip = [path[k, 2] * one + 0.0 * first for one in ti.static(self.along)]
                 turning = [path[k, 3] * one + 0.0 * first for one in ti.static(self.along)]
-                fn, ft, torque = self.laws.forces(PAIR, self, 0, 0, approach, rate, slip, turning, None, dt)
+                fn, ft, torque = self.laws.forces(PAIR, self, 0, 0, approach, rate, slip, turning, NO_WAY, dt)
                 result[k, 0] = fn[0]
                 for n in ti.static(range(len(self.along))):
                     result[k, 1] += ft[n][0] * self.along[n]

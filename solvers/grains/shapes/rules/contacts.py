@@ -7,6 +7,7 @@ from solvers.grains.laws.chosen import PAIR, WALL
 from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, SURE
 from solvers.machine.wide import enter, entry, minus
 from solvers.space.extremes import greater, lesser
+from solvers.space.tangent import NO_WAY
 
 
 @ti.data_oriented
@@ -121,7 +122,7 @@ class ShapedContacts(Contacts):
         slip = uz * ny - uy * nz
         bearing = greater(pressing, 0.0)
         shear, roll = self.laws.tangential_force(
-            PAIR, pairs, u, block, overlap, rate, bearing, [slip], [turning], None, dt
+            PAIR, pairs, u, block, overlap, rate, bearing, [slip], [turning], NO_WAY, dt
         )
         ft = shear[0]
         fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll[0]
@@ -173,7 +174,7 @@ class ShapedContacts(Contacts):
         overlap, bearing = ti.Vector([greater(c[OVERLAP], 0.0)]), ti.Vector([greater(pressing, 0.0)])
         slips, spins = [ti.Vector([slip])], [ti.Vector([turning])]
         ft, roll = self.laws.tangential_force(
-            kind, contacts, u, p, overlap, ti.Vector([rate]), bearing, slips, spins, None, dt
+            kind, contacts, u, p, overlap, ti.Vector([rate]), bearing, slips, spins, NO_WAY, dt
         )
         return ft[0][0], roll[0][0]
 
@@ -193,7 +194,7 @@ class ShapedContacts(Contacts):
     ):
         """Apply the force of contact p to its grain and to the wall."""
         i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
-        turning = g.spin_now[0][w, i] - self.walls.rate(feature, shift)
+        turning = g.spin_now[0][w, i] - self.walls.rate(feature, shift)[0]
         if ti.static(hasattr(contacts, SURE)):
             velocity = self.walls.velocity(feature, shift, g.y[w, i], g.z[w, i])
             speed = ti.abs(g.now[0][w, i] - velocity[0]) + ti.abs(g.now[1][w, i] - velocity[1])

@@ -1,0 +1,1 @@
+"""Tanks in space: the solids that an outline stands for, and their walls."""
