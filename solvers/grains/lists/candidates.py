@@ -11,12 +11,14 @@ import taichi as ti
 
 from solvers.grains.lists.boxes import Boxes
 from solvers.grains.state import GrainState
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.space.axes import dot, named
 from solvers.tank.walls import Walls
 
-ROOM, MORE = (8, 3), (512, 16)  # of pairs and wall features: per grain, and more (all pairs of 40 grains)
+# Of pairs and wall features: per grain, in the plane and in space, and more (all pairs of 40 grains)
+ROOM, MORE = {PLANE: (8, 3), SPACE: (26, 3)}, (512, 16)
 BESIDE = 1.5  # times as far for grains beside walls as for pairs: neighbours go on together, but past walls
 
 
@@ -43,7 +45,9 @@ class Candidates:
         self.units, self.grains, self.walls, self.walled = units, grains, walls, not walls.moving
         self.boxes, self.boxed = boxes, boxes is not None
         own, world = arrays.under("candidates"), Axis("world", grains.worlds)
-        capacity, walled = (room * (each * units.size + more) for each, more in zip(ROOM, MORE, strict=True))
+        capacity, walled = (
+            room * (each * units.size + more) for each, more in zip(ROOM[grains.axes], MORE, strict=True)
+        )
         self.capacity, self.wall_capacity = capacity + 2 * room * across, walled if self.walled else 1
         starts = units.axis, Axis("start", units.size + 1)
         self.first, self.wall_first = own.integers(starts, "first", "wall_first")

@@ -16,6 +16,7 @@ from solvers.grains.lists.contact_list import ContactList
 from solvers.grains.lists.skin import Skin
 from solvers.grains.lists.validity import NEVER, ListValidity
 from solvers.grains.state import GrainState
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.space.axes import dot
@@ -23,9 +24,14 @@ from solvers.space.cells import Cells
 from solvers.tank.walls import Walls
 
 LANES = 8  # pairs a pass of the force loop: two AVX2 registers of 64-bit numbers, a fifth faster than one
-# Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more). A unit of a single
-# grain lists all of its neighbours (full list).
-ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
+# Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more), in the plane and in
+# space. A unit of a single grain lists all of its neighbours (full list).
+ROOM = {
+    PLANE: {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))},
+    SPACE: {False: ((8, 16), (3, 16)), True: ((0, 24), (0, 6))},
+}
+# Pairs of a unit with others, in columns or layers of its surface, by the share of its grains that lie there
+ACROSS = {PLANE: (8, 1.0 / 2.0), SPACE: (12, 2.0 / 3.0)}
 
 
 @ti.data_oriented
@@ -53,8 +59,9 @@ class Neighbours:
         rule=None,
     ):
         self.units, self.grains, self.walls, self.skin, self.laws = units, grains, walls, skin, laws
-        (pairs, more_pairs), (contacts, more_contacts) = ROOM[units.single]
-        across = 0 if units.whole or units.single else 8 * int(np.sqrt(units.mobile))  # pairs with other units
+        (pairs, more_pairs), (contacts, more_contacts) = ROOM[grains.axes][units.single]
+        times, power = ACROSS[grains.axes]
+        across = 0 if units.whole or units.single else times * int(units.mobile**power)  # pairs with other units
         lanes = 1 if units.single else laws.wide or self.lanes
         pairs, contacts = pairs * units.size + across + more_pairs, contacts * units.size + more_contacts
         more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())

@@ -86,3 +86,37 @@ def test_the_plane_is_space_without_x(drawn):
     for one, other in zip(space, wanted, strict=True):
         np.testing.assert_allclose(one, other, rtol=0.0, atol=ROUNDING)
     assert capped[:, 0].tolist() == np.clip(shearing[:, 0], -cap, cap).tolist()
+
+
+@ti.kernel
+def turn_pair(
+    steps: ti.i32, dt: ti.f64, rate: ti.types.ndarray(), start: ti.types.ndarray(), found: ti.types.ndarray()
+):
+    """Turn a pair with its normal (row 0 of `start`) and what it remembers (row 1) at a rate (rad/s) by exact poses."""
+    size = ti.sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2])
+    axis = ti.Vector([rate[0], rate[1], rate[2]]) / size
+    first = ti.Vector([start[0, 0], start[0, 1], start[0, 2]])
+    for _ in range(1):
+        kept = [start[1, 0], start[1, 1], start[1, 2]]
+        for n in range(1, steps + 1):
+            angle = size * dt * n
+            normal = ti.cos(angle) * first + ti.sin(angle) * axis.cross(first)
+            normal += (1.0 - ti.cos(angle)) * axis.dot(first) * axis
+            moved = size * axis.cross(normal)  # the velocity of one centre relative to the other, over their distance
+            spin = [size * axis[k] for k in ti.static(range(3))]
+            way = tangent.way([moved[0], moved[1], moved[2]], [normal[0], normal[1], normal[2]], 1.0, spin, spin, dt)
+            turned = tangent.carried(kept, way)
+            for k in ti.static(range(3)):
+                kept[k] = turned[k]
+        for k in ti.static(range(3)):
+            found[k] = kept[k]
+
+
+@pytest.mark.parametrize("axis", [(0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 2.0, 3.0)], ids=["across", "about", "skew"])
+def test_a_loaded_pair_that_turns_once_keeps_the_size_and_the_direction_of_its_force(axis):
+    """Turned rigidly by steps of 1 mrad; each errs by θ³ in direction, 6283 of them by less than 1e-5."""
+    runtime.initialise(1)
+    normal, loaded = np.array([0.0, 0.0, 1.0]), np.array([0.6, -0.8, 0.0])
+    rate, found = np.array(axis) / np.linalg.norm(axis), np.zeros(3)
+    turn_pair(6283, 2.0 * np.pi / 6283, rate, np.array([normal, loaded]), found)
+    np.testing.assert_allclose(found, loaded, atol=1e-5)
