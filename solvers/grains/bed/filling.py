@@ -9,17 +9,22 @@ third from heaps thrown at random over the width (`start_positions(..., thrown=T
 """
 
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 from math import ceil, pi, sqrt
 
 import numpy as np
 
 from solvers.grains.bed.sizes import Sizes
+from solvers.machine.quantity import PLANE
+from solvers.space.axes import UP
 from solvers.tank.outline import free_area
 
 # Area fraction of settled frictional discs: 0.82 (random close packing of discs, Berryman 1983) less the loose layers
 # at walls and surface; used only to convert a depth to a count.
 PACKING = 0.81
+# Volume fraction of settled frictional spheres, between random loose and random close packing, 0.55 and 0.64 (Silbert
+# 2010), less the loose layers at walls and surface
+PACKING_OF_SPHERES = 0.57
 SPACING = 1.04
 HANDFUL = 3  # grains across and upwards in a heap that is thrown at once
 PROUD = 0.125  # of a diameter: the least descent for which levelling moves a grain
@@ -32,9 +37,17 @@ class DoesNotFit(ValueError):
     """The tank has no room for the grains; the message is one sentence."""
 
 
-def count_for_depth(depth: float, outline: np.ndarray, sizes: Sizes, fixed: np.ndarray = NONE_FIXED) -> int:
-    """Number of grains that fill a tank with `fixed` grains to a depth (m), at the packing of a settled bed."""
-    return max(1, round(PACKING * free_area(outline, depth, fixed) / (0.25 * pi * sizes.mean_square)))
+def count_for_depth(
+    depth: float, outline: np.ndarray, sizes: Sizes, fixed: np.ndarray = NONE_FIXED, along: float | None = None
+) -> int:
+    """Number of grains that fill a tank with `fixed` grains to a depth (m), at the packing of a settled bed.
+
+    In space the tank is `along` (m) long in x.
+    """
+    area = free_area(outline, depth, fixed)
+    if along is None:
+        return max(1, round(PACKING * area / (0.25 * pi * sizes.mean_square)))
+    return max(1, round(PACKING_OF_SPHERES * area * along / (pi / 6.0 * sizes.mean_cube)))
 
 
 def radii(count: int, diameter: float, spread: float, random: np.random.Generator) -> np.ndarray:
@@ -42,14 +55,16 @@ def radii(count: int, diameter: float, spread: float, random: np.random.Generato
     return Sizes(((diameter, 1.0),), spread).draw(count, random)
 
 
-def headroom(count: int, largest: float, width: float) -> float:
-    """Height (m) in which `count` grains of radii up to `largest` (m) start over this width, thrown or not.
+def headroom(count: int, largest: float, *widths: float) -> float:
+    """Height (m) in which `count` grains of radii up to `largest` (m) start over these widths, thrown or not.
 
     A column with n grains on average gets room for more, by four standard deviations of the number of handfuls that are
     thrown on it; the few grains beyond that may go elsewhere.
     """
     pitch = 2.0 * SPACING * largest
-    rows = count / max(1.0, width / pitch - 1.0)
+    rows = count
+    for width in widths:
+        rows /= max(1.0, width / pitch - 1.0)
     return pitch * (ceil(rows + 4.0 * HANDFUL * sqrt(rows)) + 2)
 
 
@@ -61,30 +76,34 @@ def start_positions(
     plates: Sequence[np.ndarray] = (),
     thrown: bool = False,
     region: np.ndarray | None = None,
+    along: float | None = None,
 ) -> np.ndarray:
-    """Positions (n, 2) m on a randomly perturbed square lattice from the floor up, no two touching, by columns.
+    """Positions (n, axes) m on a randomly perturbed square lattice from the floor up, no two touching, by columns.
 
     They keep clear of the outline, of the `fixed` grains (k, 3) and of `plates`, polylines (m, 2), and within the
-    polygon `region` (m, 2) if there is one. If `thrown`, heaps of 3 by 3 grains are dropped on one another, uniformly
-    over the width. Raises DoesNotFit if the lattice has fewer sites than there are grains.
+    polygon `region` (m, 2) if there is one. In space the tank is `along` (m) long in x. If `thrown`, heaps of 3 grains
+    along each axis are dropped on one another, uniformly over the width. Raises DoesNotFit if the lattice has fewer
+    sites than there are grains.
     """
     reach = float(radius.max())
     lower, upper = outline.min(axis=0), outline.max(axis=0)
     sites = lattice(reach, outline, fixed, plates)
     if region is not None:
         sites = sites[_inside(sites, region)]
+    if along is not None:
+        sites, lower, upper = _drawn_out(sites, reach, along), [*lower, -0.5 * along], [*upper, 0.5 * along]
     if len(sites) < len(radius):
         room = "tank" if region is None else "region"
         size = f"{2e3 * reach:.3g} mm"
         raise DoesNotFit(
             f"{len(radius)} grains of up to {size} do not fit the {room}, which has room for {len(sites)}."
         )
-    chosen = sites[_thrown(sites[:, 0], len(radius), random)] if thrown else sites[: len(radius)]
+    chosen = sites[_thrown(np.delete(sites, UP, axis=1), len(radius), random)] if thrown else sites[: len(radius)]
     shaken = chosen + random.uniform(-1.0, 1.0, chosen.shape) * (SPACING - 1.0) * reach * 0.7
-    shaken = np.clip(shaken, lower + reach, upper - reach)
-    shaken = np.where(clear_of_walls(shaken, outline, reach, fixed, plates)[:, None], shaken, chosen)
+    shaken = np.clip(shaken, np.add(lower, reach), np.subtract(upper, reach))
+    shaken = np.where(clear_of_walls(shaken[:, :PLANE], outline, reach, fixed, plates)[:, None], shaken, chosen)
     # By columns, so that neighbours in space are neighbours in memory.
-    return shaken[np.lexsort((chosen[:, 1], chosen[:, 0]))]
+    return shaken[np.lexsort((chosen[:, UP], *np.delete(chosen, UP, axis=1).T[::-1]))]
 
 
 def lattice(
@@ -102,14 +121,27 @@ def lattice(
     return sites[clear_of_walls(sites, outline, reach, fixed, plates)] if len(sites) else sites
 
 
+def _drawn_out(sites: np.ndarray, reach: float, along: float) -> np.ndarray:
+    """Sites (k, 3) m in space of a lattice in the plane, row by row from the floor up, centred along x."""
+    pitch = 2.0 * SPACING * reach
+    count = max(0, int((along - 2.0 * reach) / pitch + 1e-9) + 1) if along >= 2.0 * reach else 0
+    x = pitch * (np.arange(count) - 0.5 * (count - 1))
+    return np.column_stack([np.repeat(sites, count, axis=0), np.tile(x, len(sites))])
+
+
 def _thrown(columns: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Indices of the sites, given by their columns' y from the floor up, that randomly thrown heaps fill."""
-    free = [list(np.flatnonzero(columns == y)[::-1]) for y in np.unique(columns)]
+    """Indices of the sites that randomly thrown heaps fill, of `columns` (n, 1 or 2) m with sites from the floor up."""
+    places = [np.unique(across, return_inverse=True) for across in columns.T]
+    shape, at = [len(values) for values, _ in places], np.stack([index for _, index in places], axis=1)
+    free: dict[tuple[int, ...], list[int]] = {}
+    for site in range(len(at) - 1, -1, -1):
+        free.setdefault(tuple(at[site]), []).append(site)
     filled: list[int] = []
     while len(filled) < count:
-        first = int(random.integers(1 - HANDFUL, len(free)))
-        for column in free[max(0, first) : first + HANDFUL]:
-            filled += [column.pop() for _ in range(min(HANDFUL, len(column)))]
+        heap = [range(first, first + HANDFUL) for first in (int(random.integers(1 - HANDFUL, size)) for size in shape)]
+        for column in product(*heap):
+            sites = free.get(column, [])
+            filled += [sites.pop() for _ in range(min(HANDFUL, len(sites)))]
     return np.array(filled[:count])
 
 

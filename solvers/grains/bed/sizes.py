@@ -35,6 +35,12 @@ class Sizes:
         return float(share @ diameter**2 * self._moments[1])
 
     @property
+    def mean_cube(self) -> float:
+        """Mean cubed diameter (m³) by number: 6/π times the mean volume of a grain."""
+        diameter, share = self._classes
+        return float(share @ diameter**3 * self._moments[2])
+
+    @property
     def range(self) -> tuple[float, float]:
         """Smallest and largest possible diameter (m)."""
         diameter = self._classes[0]
@@ -70,13 +76,13 @@ class Sizes:
         return truncnorm(*self._cuts)
 
     @property
-    def _moments(self) -> tuple[float, float]:
-        """Mean and mean square of a diameter relative to its class's diameter."""
+    def _moments(self) -> tuple[float, float, float]:
+        """Mean, mean square and mean cube of a diameter relative to its class's diameter."""
         if self.normal and self.spread:
-            mean, variance = self._standard.stats("mv")
-            first = 1.0 + self.spread * mean
-            return float(first), float(first**2 + self.spread**2 * variance)
-        return 1.0, 1.0 + self.spread**2 / 3.0
+            mean, variance, skew = map(float, self._standard.stats("mvs"))
+            first, spread = 1.0 + self.spread * mean, self.spread**2 * variance
+            return first, first**2 + spread, first**3 + 3.0 * first * spread + skew * spread**1.5
+        return 1.0, 1.0 + self.spread**2 / 3.0, 1.0 + self.spread**2
 
 
 def apportion(wanted: Sequence[float]) -> np.ndarray:
