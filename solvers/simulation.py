@@ -10,6 +10,7 @@ import numpy as np
 from solvers.grains.pressing import UNTOUCHED, Pressing
 from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
 from solvers.matters import context_of, made
@@ -285,8 +286,9 @@ class Simulation:
         return {name: values for matter in matters for name, values in matter.snapshot(now).items()}
 
     def placed(self) -> dict[str, np.ndarray]:
-        """Where the scene's parts are now: displacements (W, P, 2) m and turns (W, P) in the tank."""
+        """Where the scene's parts are now: displacements (W, P, axes) m and turns (W, P) about x, in the tank."""
         place, turn = self.parts.places(self.origin + self.time)
+        place = np.pad(place, ((0, 0), (0, 0), (0, self.scene.axes - PLANE)))
         return {"part": place, "part_turn": turn}
 
     def pressing(self, world: int = 0) -> Pressing:

@@ -31,7 +31,9 @@ def grain_count(preset: Preset) -> int:
         return len(grains.listed)
     if grains.count is not None:
         return grains.count
-    return count_for_depth(grains.depth, np.array(preset.hold.corners), preset.sizes, fixed_grains(preset))
+    return count_for_depth(
+        grains.depth, np.array(preset.hold.corners), preset.sizes, fixed_grains(preset), preset.hold.along
+    )
 
 
 def fixed_grains(preset: Preset) -> np.ndarray:
@@ -53,9 +55,10 @@ def filling_outline(preset: Preset) -> np.ndarray:
         return outline
     count, largest = grain_count(preset), _farthest(preset)
     low = not (grains.surface == "disturbed" or preset.hold.open_edges)
-    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset))) >= count:
+    along = preset.hold.along
+    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset), along)) >= count:
         return outline
-    return raised(outline, headroom(count, largest, preset.hold.extent[0]))
+    return raised(outline, headroom(count, largest, preset.hold.extent[0], *([along] if along else [])))
 
 
 def _farthest(preset: Preset) -> float:
@@ -123,7 +126,7 @@ def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
     region = np.array(grains.place) if grains.place else None
     try:
         position = [
-            start_positions(size, outline, r, fixed, plates, thrown, region)
+            start_positions(size, outline, r, fixed, plates, thrown, region, preset.hold.along)
             for size, r in zip(reach, random, strict=True)
         ]
     except DoesNotFit as error:

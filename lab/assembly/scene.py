@@ -57,6 +57,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         axles=[preset.axle.solved] * worlds if preset.axle else (),
         thickness=preset.thickness,
         length=preset.tank.length,
+        solid=preset.tank.solid,
         more_tanks=(*further_tanks(preset, preset.thickness), *rooms_of_bodies(preset)),
         precision=preset.run.precision,
         schedule=preset.run.schedule,

@@ -18,7 +18,7 @@ from solvers.machine import runtime  # noqa: F401 (first, since it loads Taichi 
 # isort: split
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS, stiffness_for
-from lab.preset.fields import Of, defaults_of, join, walk
+from lab.preset.fields import Of, defaults_of, walk
 from lab.preset.kept.content import MATTERS
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
@@ -34,6 +34,7 @@ from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
+from lab.preset.sections.space import check_space
 from lab.preset.sections.tank import FurtherTank, Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.air import Air
@@ -118,6 +119,11 @@ class Preset(WithBodies):
         """The keys of the matters that the tank holds; none if it is empty."""
         return tuple(name for name in MATTERS if getattr(self, name) is not None)
 
+    @property
+    def axes(self) -> int:
+        """Number of axes of the scene: two in the plane, three in space."""
+        return self.tank.axes
+
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:
         """The grains of each shape; empty if all are discs. Raises LabError."""
@@ -187,8 +193,11 @@ class Preset(WithBodies):
 
     @property
     def thickness(self) -> float:
-        """Thickness (m) of the slab: the tank's, else the grains' mean diameter, without grains one metre."""
-        return self.tank.thickness or (self.mean_diameter if self.grains else BARE_THICKNESS)
+        """Thickness (m) of the slab: the tank's, else the grains' mean diameter, without grains one metre.
+
+        In space it is the tank's length.
+        """
+        return self.tank.along or self.tank.thickness or (self.mean_diameter if self.grains else BARE_THICKNESS)
 
     @property
     def a_metre(self) -> float:
@@ -212,6 +221,7 @@ def check(preset: Preset) -> None:
     """Raise LabError, one sentence, for keys that contradict each other, and for what cannot be built."""
     check_tank(preset.tank)
     _check_matters(preset)
+    check_space(preset)
     check_parts(preset)
     check_hold(preset)
     if preset.grains is not None:
@@ -246,7 +256,7 @@ def _check_of_grains(preset: Preset) -> None:
     """Raise LabError for keys that contradict each other in what is said of the grains."""
     if preset.material is None:
         read(Material, {}, "material")  # says which key is missing
-    (_check_shapely if preset.shapes else _check_shapeless)(preset)
+    shapes.check_shapes(preset)
     settle = preset.run.settles
     check_grains(preset.grains, bool(preset.shape_classes), settle)
     sizes = preset.sizes, preset.mean_diameter, preset.hold, _size_key(preset)
@@ -263,35 +273,3 @@ def _size_key(preset: Preset) -> str:
         sizes = preset.shape_classes
         return f"shapes.{max(sizes, key=lambda name: sizes[name].diameter)}.diameter"
     return "grains.diameter" if preset.grains.table is None else "grains.table"
-
-
-def _check_shapeless(preset: Preset) -> None:
-    """Raise LabError for settings that need irregular grains if there are none."""
-    for section, keys in (("grains", ("orientation", "settled_as")), ("contact", ("outlines", "nodes"))):
-        given = getattr(preset, section)
-        for name in keys:
-            if getattr(given, name) != defaults_of(type(given))[name]:
-                key = join(section, name)
-                raise LabError(f"{key}: goes with irregular grains; add a table [shapes.NAME], or leave this out.")
-
-
-def _check_shapely(preset: Preset) -> None:
-    """Raise LabError for settings that need discs if the grains are irregular."""
-    grains = preset.grains
-    if preset.kinds:
-        raise LabError("kinds: irregular grains are of one material; leave out the kinds, or the shapes.")
-    if preset.contact.cohesion != "none":
-        raise LabError("contact.cohesion: no liquid between irregular grains yet; leave it out, or the shapes.")
-    if grains.bed is not None:
-        raise LabError("grains.bed: lists round grains; leave out the file, or the shapes.")
-    if grains.table is not None:
-        raise LabError("grains.table: shapes have diameters of their own; give these as shapes.NAME.diameter.")
-    if grains.settled_as == "discs" and not all(shape.round for shape in preset.shapes.values()):
-        raise LabError("grains.settled_as: discs stand for round outlines only; leave it out, or the descriptors.")
-    if grains.settled_as == "discs" and not preset.run.settles:
-        raise LabError("grains.settled_as: without run.settle, or without gravity, no bed is settled; leave it out.")
-    if grains.surface == "undisturbed":
-        raise LabError(
-            "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "
-            "disturbed, or leave out the shapes."
-        )

@@ -17,7 +17,7 @@ from solvers.fluid import quantities as water
 from solvers.fluid.inflow import quantities as inflow
 from solvers.fluid.phases import quantities as air
 from solvers.grains import quantities as grains
-from solvers.machine.quantity import OWNERS, Quantity
+from solvers.machine.quantity import OWNERS, PLANE, Quantity
 from solvers.ship import quantities as ship
 from solvers.tank import quantities as tank
 
@@ -91,6 +91,8 @@ def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quan
     whole = series_of(afloat, matters, bool(preset.axle), bool(preset.bodies), bool(preset.inflow))
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
     tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
+    if preset.axes > PLANE:
+        tables = {name: tuple(one.within(preset.axes) for one in those) for name, those in tables.items()}
     return tables | ({"steering": STEERING} if steered else {})
 
 

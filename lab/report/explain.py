@@ -204,7 +204,7 @@ def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
         *(grains.laws(preset, simulation) if preset.grains else []),
         *(water.models(scene) if preset.water else []),
         ("body forces", terms),
-        ("walls", f"{walls.segments} segments, {walls.corners} corners that cargo can touch"),
+        ("walls", f"{walls.said} that cargo can touch"),
         ("numbers", PRECISIONS[scene.precision]),
         ("schedule", f"{SCHEDULES[simulation.schedule_name]}, on {simulation.arch}"),
     ]

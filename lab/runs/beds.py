@@ -26,6 +26,7 @@ from lab.preset.units import show
 from lab.runs.bed_key import bed_key
 from solvers.grains.bed.filling import clear_of_walls, levelled
 from solvers.grains.materials import Material
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axes, of_world
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -165,7 +166,7 @@ def _poured(
         poured = np.stack([levelled(bed, radius, pouring.outline, grains.fixed) for bed, radius in beds])
     if not hold.open_edges and how.outline != _corners(scene):  # else they cannot be beyond the walls
         for bed, radius in zip(poured, inner, strict=True):
-            if not np.all(clear_of_walls(bed, hold.outline, FREE * radius)):
+            if not np.all(clear_of_walls(bed[:, :PLANE], hold.outline, FREE * radius)):
                 top = show(float((bed[:, 1] + radius).max() - hold.outline[:, 1].min()), "m")
                 raise LabError(f"grains: the bed is up to {top} high, too high for the tank; ask for fewer grains.")
     return scene, poured

@@ -61,6 +61,11 @@ class Walls:
         self.edge = own.holding("edge", np.concatenate(self.bounds), "number", own.place)
 
     @property
+    def said(self) -> str:
+        """Its features in words."""
+        return f"{self.segments} segments, {self.corners} corners"
+
+    @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the box round all tanks, with a margin round open ones."""
         return self._box(self.outline)

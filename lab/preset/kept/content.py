@@ -31,6 +31,7 @@ class Content:
     openings: tuple[str, ...]
     inflow: tuple[str, ...]
     repeats: int
+    axes: int
 
 
 def parted(gauges: Mapping[str, G]) -> tuple[dict[str, G], ...]:

@@ -7,6 +7,7 @@ from lab.preset import formats
 from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
 from lab.preset.kept.content import INSIDE, KINDS_OF_GAUGES, MATTERS, Content, Gauge
 from lab.preset.kept.read import keys
+from solvers.machine.quantity import PLANE, SPACE
 
 
 def content(table: object) -> Content:
@@ -20,12 +21,13 @@ def content(table: object) -> Content:
     has = {name: kept.get(name) is not None for name in (*MATTERS, "material", "ship", "axle")}
     repeats = kept.get("run", {}).get("repeats", 1)
     matters = tuple(name for name in MATTERS if has[name])
+    axes = SPACE if kept.get("tank", {}).get("along") else PLANE
     parts = kept.get("parts", {}).items()
     bodies = tuple(name for name, part in parts if part.get("density") or part.get("mass"))
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))
     openings = (f"{name}.{opening}" for name, part in parts for opening in part.get("openings") or ())
     own = has["material"], has["ship"], has["axle"], gauges
-    return Content(matters, *own, bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ())), repeats)
+    return Content(matters, *own, bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ())), repeats, axes)
 
 
 def _check(taken: Taken, value: object, key: str) -> None:

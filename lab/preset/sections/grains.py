@@ -16,6 +16,7 @@ from solvers.grains.bed.sizes import Sizes
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
+DENSEST_SPHERES = math.pi / math.sqrt(18)  # largest share of space that equal spheres fill (Hales 2005)
 MOST_PLACES = 4e6  # lattice sites, one per largest grain, in a tank to be filled: they are held in memory
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
@@ -46,6 +47,7 @@ class Grains:
     )
     table: Annotated[
         tuple[tuple[Length, Annotated[float, Interval(gt=0)]], ...] | None,
+        Cheap(),
         Doc('Classes of sizes, [diameter, share] each, for distribution = "table".'),
     ] = None
     shares: Annotated[
@@ -148,11 +150,12 @@ def check_room(
     largest, (width, height) = sizes.range[1], tank.extent
     if largest >= min(width, height):
         raise LabError(f"{size_key}: grains of up to {show(largest, 'm')} do not fit into the tank.")
-    if width * height > MOST_PLACES * largest**2:
+    along = (tank.along or largest) / largest
+    if width * height * along > MOST_PLACES * largest**2:
         raise LabError(f"{size_key}: grains of up to {show(largest, 'm')} are too small for so large a tank.")
     high, deep = show(height, "m"), show(grains.depth or 0.0, "m")
     if grains.depth is None:
-        _check_count(grains, sizes, grains.place or tank.corners)
+        _check_count(grains, sizes, grains.place or tank.corners, tank.along)
     elif grains.depth > height and tank.open_edges:
         raise LabError(f"grains.depth: {deep} is more than the tank's height, {high}.")
     elif grains.depth >= height and not tank.open_edges:
@@ -161,8 +164,11 @@ def check_room(
         raise LabError(f"grains.depth: {deep} is less than one grain, {show(mean, 'm')}.")
 
 
-def _check_count(grains: Grains, sizes: Sizes, outline: Sequence[Point]) -> None:
-    """Raise LabError for more grains than the tank has room for in the densest lattice."""
-    if grains.count * math.pi / 4 * sizes.mean_square > DENSEST * area(outline):
+def _check_count(grains: Grains, sizes: Sizes, outline: Sequence[Point], along: float | None) -> None:
+    """Raise LabError for more grains than the tank, `along` (m) long in space, has room for in the densest lattice."""
+    taken, room = grains.count * math.pi / 4 * sizes.mean_square, DENSEST * area(outline)
+    if along is not None:
+        taken, room = grains.count * math.pi / 6 * sizes.mean_cube, DENSEST_SPHERES * area(outline) * along
+    if taken > room:
         room = "region" if grains.region else "tank"
         raise LabError(f"grains.count: {grains.count} grains do not fit into the {room}.")

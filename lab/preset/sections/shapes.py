@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.fields import Columns, Table
+from lab.preset.fields import Columns, Table, defaults_of, join
 from lab.preset.units import needed
 from solvers.grains.shapes.cargo import cargo, cargoes
 from solvers.grains.shapes.contour import Contour
@@ -211,3 +211,40 @@ def caution(contours: Sequence[Contour], rule: str) -> str | None:
         f"Outlines have dents with a radius of curvature of {100 * sharpest:.1f} % of R0: "
         'grains that mesh may gain energy; contact.outlines = "area" keeps it.'
     )
+
+
+def check_shapes(preset) -> None:
+    """Raise LabError for settings of a preset that need irregular grains, or discs, where it has the others."""
+    (_check_shapely if preset.shapes else _check_shapeless)(preset)
+
+
+def _check_shapeless(preset) -> None:
+    """Raise LabError for settings that need irregular grains if there are none."""
+    for section, keys in (("grains", ("orientation", "settled_as")), ("contact", ("outlines", "nodes"))):
+        given = getattr(preset, section)
+        for name in keys:
+            if getattr(given, name) != defaults_of(type(given))[name]:
+                key = join(section, name)
+                raise LabError(f"{key}: goes with irregular grains; add a table [shapes.NAME], or leave this out.")
+
+
+def _check_shapely(preset) -> None:
+    """Raise LabError for settings that need discs if the grains are irregular."""
+    grains = preset.grains
+    if preset.kinds:
+        raise LabError("kinds: irregular grains are of one material; leave out the kinds, or the shapes.")
+    if preset.contact.cohesion != "none":
+        raise LabError("contact.cohesion: no liquid between irregular grains yet; leave it out, or the shapes.")
+    if grains.bed is not None:
+        raise LabError("grains.bed: lists round grains; leave out the file, or the shapes.")
+    if grains.table is not None:
+        raise LabError("grains.table: shapes have diameters of their own; give these as shapes.NAME.diameter.")
+    if grains.settled_as == "discs" and not all(shape.round for shape in preset.shapes.values()):
+        raise LabError("grains.settled_as: discs stand for round outlines only; leave it out, or the descriptors.")
+    if grains.settled_as == "discs" and not preset.run.settles:
+        raise LabError("grains.settled_as: without run.settle, or without gravity, no bed is settled; leave it out.")
+    if grains.surface == "undisturbed":
+        raise LabError(
+            "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "
+            "disturbed, or leave out the shapes."
+        )

@@ -11,7 +11,9 @@ from lab.preset.fields import Of
 from lab.preset.outline import Point, rectangle, simple_polygon
 from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit, Usual
+from solvers.machine.quantity import PLANE
 from solvers.tank.outline import top_edges
+from solvers.tank.solids.solid import Prism
 
 MOST_LINING = 20_000  # grains that line a tank
 
@@ -62,12 +64,19 @@ class Shell:
 
 @dataclass(frozen=True)
 class Tank(Shell):
-    """A tank: width and height, or an outline; whether it has a lid and a lining of fixed grains.
+    """A tank: width and height, or an outline; its length in space; whether it has a lid and a lining of fixed grains.
 
     The plane stands for a slab of this `thickness`: forces are those on the slab, and a ship carries as many slabs as
     fit into a metre of the tank's `length`.
     """
 
+    along: Annotated[
+        Length | None,
+        Doc(
+            "Length of the tank along x, from end wall to end wall: the scene is then in space and its grains are "
+            "spheres; without it the scene is plane."
+        ),
+    ] = None
     roughness: Annotated[
         Length | None,
         Of("grains"),
@@ -77,6 +86,16 @@ class Tank(Shell):
         Thickness | None,
         Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it, 1 m if empty."),
     ] = None
+
+    @property
+    def solid(self) -> Prism | None:
+        """The solid that the outline stands for in space; None in the plane."""
+        return Prism(self.along) if self.along else None
+
+    @property
+    def axes(self) -> int:
+        """Number of axes of a scene in it."""
+        return self.solid.axes if self.solid else PLANE
 
 
 @dataclass(frozen=True)

@@ -87,11 +87,11 @@ def start_positions(
     """
     reach = float(radius.max())
     lower, upper = outline.min(axis=0), outline.max(axis=0)
-    sites = lattice(reach, outline, fixed, plates)
+    sites = lattice(reach, outline, fixed, plates, along)
     if region is not None:
-        sites = sites[_inside(sites, region)]
+        sites = sites[_inside(sites[:, :PLANE], region)]
     if along is not None:
-        sites, lower, upper = _drawn_out(sites, reach, along), [*lower, -0.5 * along], [*upper, 0.5 * along]
+        lower, upper = [*lower, -0.5 * along], [*upper, 0.5 * along]
     if len(sites) < len(radius):
         room = "tank" if region is None else "region"
         size = f"{2e3 * reach:.3g} mm"
@@ -107,9 +107,16 @@ def start_positions(
 
 
 def lattice(
-    reach: float, outline: np.ndarray, fixed: np.ndarray = NONE_FIXED, plates: Sequence[np.ndarray] = ()
+    reach: float,
+    outline: np.ndarray,
+    fixed: np.ndarray = NONE_FIXED,
+    plates: Sequence[np.ndarray] = (),
+    along: float | None = None,
 ) -> np.ndarray:
-    """Lattice sites (k, 2) m for grains of radii up to `reach` (m), row by row from the floor up."""
+    """Lattice sites (k, axes) m for grains of radii up to `reach` (m), row by row from the floor up.
+
+    In space the tank is `along` (m) long in x.
+    """
     pitch = 2.0 * SPACING * reach
     lower, upper = outline.min(axis=0), outline.max(axis=0)
     sites_y = np.arange(lower[0] + reach, upper[0] - reach + 1e-9 * pitch, pitch)
@@ -118,13 +125,14 @@ def lattice(
         # Centre the columns in the width.
         sites_y += 0.5 * (upper[0] - reach - sites_y[-1])
     sites = np.stack(np.meshgrid(sites_y, sites_z), axis=-1).reshape(-1, 2)
-    return sites[clear_of_walls(sites, outline, reach, fixed, plates)] if len(sites) else sites
+    sites = sites[clear_of_walls(sites, outline, reach, fixed, plates)] if len(sites) else sites
+    return sites if along is None else _drawn_out(sites, reach, along)
 
 
 def _drawn_out(sites: np.ndarray, reach: float, along: float) -> np.ndarray:
     """Sites (k, 3) m in space of a lattice in the plane, row by row from the floor up, centred along x."""
     pitch = 2.0 * SPACING * reach
-    count = max(0, int((along - 2.0 * reach) / pitch + 1e-9) + 1) if along >= 2.0 * reach else 0
+    count = int((along - 2.0 * reach) / pitch + 1e-9) + 1 if along >= 2.0 * reach else 0
     x = pitch * (np.arange(count) - 0.5 * (count - 1))
     return np.column_stack([np.repeat(sites, count, axis=0), np.tile(x, len(sites))])
 

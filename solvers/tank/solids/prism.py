@@ -52,6 +52,12 @@ class PrismWalls:
         self.real = arrays.real
 
     @property
+    def said(self) -> str:
+        """Its features in words."""
+        rims = f", {self.edges} edges and {self.points} points round these" if self.open else ""
+        return f"{self.section.said}, drawn out along x, and 2 end walls{rims}"
+
+    @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the box round the tank, with a margin round an open one."""
         outline = self.section.outline
