@@ -17,12 +17,12 @@ from lab.measures.sloshing_frequency import peak_frequency
 from lab.measures.steady import harmonics
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 from solvers.motion.axle import Axle
 from solvers.ship.waves import soft_start
 
 LEAST_SAMPLES = 32
 STEP = 1e-3  # s, of the empty tank's motion: 2e-7 of a period of 2 s
-ROLL = 2  # of a pose
 
 
 def applies(recording: Recording) -> bool:

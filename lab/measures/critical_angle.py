@@ -44,6 +44,7 @@ from lab.measures.drawing import BLUE, GREEN, POINTS, VERMILION, Sheet, band, ma
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 
 OF = "grains"
 BIN = 0.05  # deg of tilt
@@ -97,7 +98,7 @@ def _main(steps: list[Step]) -> list[Step]:
 
 def shift_curve(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray]:
     """Tilt (T',), deg, and shift of the centre of mass downhill (T',), m, on the way out, while there is a bed."""
-    tilt = recording.series["pose"][:, world, 2]
+    tilt = recording.series["pose"][:, world, ROLL]
     leg = outward_leg(tilt)
     y = recording.series["centre_of_mass"][: leg.end, world, 0]
     turned, shift = leg.direction * (tilt[: leg.end] - tilt[0]), -leg.direction * (y - y[0])

@@ -6,6 +6,7 @@ from lab.measures.motion import HARMONIC, driving
 from lab.measures.steady import harmonics
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 
 ALONG = {"sway": 0, "heave": 1}  # the column of wall_force that a motion works against
 
@@ -27,7 +28,7 @@ def along_motion(recording: Recording) -> np.ndarray:
     if name != "roll":
         return force[..., ALONG[name]]
     across, up = settings.centre
-    return force[..., 2] + up * force[..., 0] - across * force[..., 1]
+    return force[..., ROLL] + up * force[..., 0] - across * force[..., 1]
 
 
 def between(values: np.ndarray) -> np.ndarray:

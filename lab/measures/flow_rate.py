@@ -21,7 +21,7 @@ import numpy as np
 from lab.measures.drawing import BLUE, VERMILION, Sheet, band
 from lab.measures.outlet import Outlet, find_outlet, passed
 from lab.measures.value import Value, over_worlds
-from lab.measures.wall_force import SHEET, grain_mass
+from lab.measures.wall_force import grain_mass, said
 from lab.recording import Recording
 
 OF = "grains"
@@ -43,7 +43,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     outlet, time = find_outlet(recording), recording.frames["time"][:]
     out = passed(recording, outlet)
     found = {"flow_rate": _rate(time, out.sum(axis=2), "1/s")}
-    found["mass_flow_rate"] = _rate(time, 1e3 * (out * grain_mass(recording)).sum(axis=2), "g/s", note=SHEET)
+    found["mass_flow_rate"] = _rate(time, 1e3 * (out * grain_mass(recording)).sum(axis=2), "g/s", note=said(recording))
     width = np.hypot(*np.diff(outlet.lips, axis=0)[0])
     return found | {
         "outlet_width": over_worlds(width / recording.mean_diameter, "d"),

@@ -15,6 +15,7 @@ from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, level, mil
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 
 OF = "grains"
 UPRIGHT = 0.005  # of the largest tilt
@@ -43,7 +44,7 @@ def measure(recording: Recording) -> dict[str, Value]:
 
 def loop(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray, int]:
     """Tilt (T,), deg, and shift downhill (T,), m, counted in the direction of the way out, and where that ends."""
-    tilt = recording.series["pose"][:, world, 2]
+    tilt = recording.series["pose"][:, world, ROLL]
     y = recording.series["centre_of_mass"][:, world, 0]
     leg = outward_leg(tilt)
     return leg.direction * np.degrees(tilt - tilt[0]), -leg.direction * (y - y[0]), leg.end

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 from solvers.motion.harmonic import Harmonic
 
 # Harmonic motions and the coordinate of the pose (Y, Z, phi) that each moves.
-HARMONIC = {"sway": 0, "roll": 2, "heave": 1}
+HARMONIC = {"sway": 0, "roll": ROLL, "heave": 1}
 LEAST_TILT = np.radians(2.0)  # a run that turns the tank by less is not a tilting test
 
 
@@ -22,7 +23,7 @@ class Leg:
 
 def is_tilt(recording: Recording) -> bool:
     """Whether the preset tilts the tank and the tank has turned far enough to tell."""
-    turned = np.abs(recording.series["pose"][:, :, 2]).max(initial=0.0) > LEAST_TILT
+    turned = np.abs(recording.series["pose"][:, :, ROLL]).max(initial=0.0) > LEAST_TILT
     return recording.preset.motion.tilt is not None and bool(turned)
 
 

@@ -21,6 +21,7 @@ from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet
 from lab.measures.ship import has_ship
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 
 NOISE = 0.03  # of the widest swing
 LEAST = 4  # swings
@@ -164,7 +165,7 @@ def _free(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray]:
     """Time (s) and roll (rad) after the release."""
     time = recording.series["time"]
     rows = time >= recording.preset.ship.release
-    return time[rows], recording.series["pose"][rows, world, 2]
+    return time[rows], recording.series["pose"][rows, world, ROLL]
 
 
 def _row(found: Decay | None) -> list[float]:

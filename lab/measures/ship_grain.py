@@ -28,6 +28,7 @@ from lab.naval import sheet
 from lab.naval.condition import Condition, condition
 from lab.recording import Recording
 from solvers.machine.errors import Unavailable
+from solvers.machine.quantity import ROLL
 from solvers.ship.cargo import ONE, level_area
 from solvers.ship.hydrostatics import Loading, balanced_heave
 from solvers.ship.naval.grain_code import ASSUMED, residual
@@ -145,7 +146,7 @@ def draw_moment(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]
     """
     found, series = shift(recording), recording.series
     heel, moment = sheet_.panels(heights=(1, 1.4))[:, 0]
-    band(heel, series["time"], -np.degrees(series["pose"][..., 2]), GREY, "heel")
+    band(heel, series["time"], -np.degrees(series["pose"][..., ROLL]), GREY, "heel")
     rows = np.unique(np.linspace(0, len(found.way) - 1, LISTS).astype(int))
     band(heel, np.array(series["time"])[rows], listed(found, rows), "black", "list with the cargo as it lies")
     heel.set_ylabel("heel, list to\nstarboard (deg)")

@@ -42,6 +42,7 @@ from lab.measures.value import Value, over_worlds
 from lab.preset.sections.ship import axis_place
 from lab.recording import Recording
 from lab.recording.ship_end import VERBS, End, ends
+from solvers.machine.quantity import ROLL
 from solvers.ship.outcome import CYCLES, Outcome
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def applies(recording: Recording) -> bool:
 
 def measure(recording: Recording) -> dict[str, Value]:
     """largest_roll, roll_amplitude, roll_bias, significant_roll (deg), capsized_at, roll_period (s) and so on."""
-    time, roll = recording.series["time"], recording.series["pose"][..., 2]
+    time, roll = recording.series["time"], recording.series["pose"][..., ROLL]
     end = ends(recording.series)
     lost = np.array([one is not None for one in end])
     found = {
@@ -107,7 +108,7 @@ def _fundamental(recording: Recording, lost: np.ndarray) -> dict[str, Value]:
 def _outcome(recording: Recording, world: int) -> Outcome | None:
     """What became of the ship of one world, until she was lost."""
     end, time = ends(recording.series)[world], recording.series["time"]
-    roll = recording.series["pose"][:, world, 2]
+    roll = recording.series["pose"][:, world, ROLL]
     if end:
         kept = time <= end.time
         time, roll = time[kept], roll[kept]
@@ -184,7 +185,7 @@ def _mark_end(axes: "Axes", end: End, worlds: int) -> None:
 def draw_portrait(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """Phase portrait of a ship's roll, the last half of the run darker."""
     ((axes,),) = sheet.panels()
-    roll, rate = (np.degrees(recording.series[name][..., 2]) for name in ("pose", "pose_rate"))
+    roll, rate = (np.degrees(recording.series[name][..., ROLL]) for name in ("pose", "pose_rate"))
     half = len(roll) // 2
     alone = frozen(recording)
     if alone is not None and len(alone[1]) > LEAST_PORTRAIT:
@@ -201,7 +202,7 @@ def draw_portrait(sheet: Sheet, recording: Recording, values: Mapping[str, Value
 
 def draw_spectrum(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """Amplitude spectrum of a ship's roll over the last half of the run; none where a ship was lost."""
-    time, roll = recording.series["time"], np.degrees(recording.series["pose"][..., 2])
+    time, roll = recording.series["time"], np.degrees(recording.series["pose"][..., ROLL])
     half = len(time) // 2
     if any(ends(recording.series)) or len(time) - half < LEAST_PORTRAIT:
         return

@@ -23,6 +23,7 @@ from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, level, mar
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 
 OF = "grains"
 START = 0.01  # of the movable grains
@@ -64,7 +65,7 @@ def spilled_share(recording: Recording) -> np.ndarray:
 
 def spill_curve(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray]:
     """Tilt (T',), deg, and share spilled (T',) on the way out."""
-    tilt = recording.series["pose"][:, world, 2]
+    tilt = recording.series["pose"][:, world, ROLL]
     leg = outward_leg(tilt)
     turned = leg.direction * (tilt[: leg.end] - tilt[0])
     return np.degrees(turned), spilled_share(recording)[: leg.end, world]

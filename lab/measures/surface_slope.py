@@ -1,10 +1,11 @@
 """How steep the free surface lies: its inclination against the horizontal while the tank tilts.
 
-The tank's width is cut into columns two mean diameters wide; the top of the highest grain of each
-is a point of the surface. Columns by the walls (a tenth of the width on either side, where the bed
-climbs or hollows) and columns where less than two grains lie on each other (bare floor) are left
-out. The Theil-Sen line (Sen 1968: the median of the slopes of all pairs) through the rest is not
-moved by a grain in the air. Its angle plus the tank's tilt is the inclination in the earth frame,
+The tank's width, and in space its length, is cut into columns two mean diameters wide; the top of the
+highest grain of each is a point of the surface. Columns by the walls (a tenth of the width on either
+side, where the bed climbs or hollows) and columns where less than two grains lie on each other (bare
+floor) are left out. The Theil-Sen line (Sen 1968: the median of the slopes of all pairs) through the
+rest is not moved by a grain in the air.
+Its angle plus the tank's tilt is the inclination in the earth frame,
 counted positive in the direction of the tilt: a bed that moves as one with the tank has the tilt
 itself, a liquid zero.
 
@@ -25,6 +26,7 @@ from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, level, mar
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import ROLL
 
 OF = "grains"
 if TYPE_CHECKING:
@@ -74,25 +76,32 @@ def surface_course(recording: Recording) -> Course:
 def _find_course(recording: Recording) -> Course:
     count = len(recording.frames["time"])
     frames = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).astype(int))
-    tilt = recording.frames["pose"][:][frames, :, 2]
+    tilt = recording.frames["pose"][:][frames, :, ROLL]
     slope, error = np.full(tilt.shape, np.nan), np.full(tilt.shape, np.nan)
+    along = recording.preset.tank.along
     for row, frame in enumerate(frames):
         position = recording.frames["position"][int(frame)].astype(float)
         for world in range(recording.worlds):
-            points = free_surface(position[world], recording.radius[world], recording.outline)
+            points = free_surface(position[world], recording.radius[world], recording.outline, along)
             slope[row, world], error[row, world] = inclination(*points)
-    direction = [outward_leg(recording.series["pose"][:, w, 2]).direction for w in range(tilt.shape[1])]
+    direction = [outward_leg(recording.series["pose"][:, w, ROLL]).direction for w in range(tilt.shape[1])]
     return frames, np.degrees(slope + tilt) * direction, np.degrees(error)
 
 
-def free_surface(position: np.ndarray, radius: np.ndarray, outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points y, z (k,), m, of the free surface of grains at position (n, 2), m, tank frame; spilled ones left out."""
+def free_surface(
+    position: np.ndarray, radius: np.ndarray, outline: np.ndarray, along: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points y, z (k,), m, of the free surface of grains at position (n, axes), m, tank frame; spilled ones left out.
+
+    In space the tank is `along` (m) long in x.
+    """
     diameter = 2 * radius.mean()
     (left, floor), (right, _) = outline.min(axis=0), outline.max(axis=0)
     held = (position[:, 0] > left) & (position[:, 0] < right) & (position[:, 1] > floor)
     position, radius = position[held], radius[held]
-    edges = np.arange(left, right, COLUMN * diameter)
-    column = np.clip(np.searchsorted(edges, position[:, 0], side="right") - 1, 0, len(edges) - 1)
+    column, count = _columns(position[:, 0], left, right, COLUMN * diameter)
+    if along is not None:
+        column = column + count * _columns(position[:, 2], -0.5 * along, 0.5 * along, COLUMN * diameter)[0]
     top = position[:, 1] + radius
     # The last of each column when sorted by column, then by height, is its highest grain.
     order = np.lexsort((top, column))
@@ -101,7 +110,15 @@ def free_surface(position: np.ndarray, radius: np.ndarray, outline: np.ndarray) 
     margin = MARGIN * (right - left)
     kept = (y > left + margin) & (y < right - margin)
     kept &= z - floor > LEAST_LAYER * diameter
+    if along is not None:
+        kept &= np.abs(position[highest, 2]) < (0.5 - MARGIN) * along
     return y[kept], z[kept]
+
+
+def _columns(place: np.ndarray, begin: float, end: float, width: float) -> tuple[np.ndarray, int]:
+    """The columns (n,) from `begin` to `end` in which places (n,) are, by number, and how many there are; all in m."""
+    edges = np.arange(begin, end, width)
+    return np.clip(np.searchsorted(edges, place, side="right") - 1, 0, len(edges) - 1), len(edges)
 
 
 def inclination(y: np.ndarray, z: np.ndarray) -> tuple[float, float]:
@@ -143,7 +160,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     if not np.isfinite(slope).any():
         return
     ((axes,),) = sheet.panels()
-    pose = recording.frames["pose"][:][frames, :, 2]
+    pose = recording.frames["pose"][:][frames, :, ROLL]
     for world in range(recording.worlds):
         leg = outward_leg(pose[:, world])
         tilt = np.degrees(leg.direction * pose[:, world])

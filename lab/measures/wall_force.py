@@ -34,11 +34,17 @@ from lab.measures.motion import HARMONIC, driving
 from lab.measures.steady import BLOCKS, SHORT, Steady, amplitude_value, averaged, phase_value, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import PLANE, ROLL
 
 OF = "grains"
 SHEET = "of a sheet one grain thick"
 EMPTY = "no grain is left in the tank"
 LEAST_SAMPLES = 2 * BLOCKS
+
+
+def said(recording: Recording) -> str:
+    """What the forces are of; nothing in space, where they are of the whole tank."""
+    return SHEET if recording.content.axes == PLANE else ""
 
 
 def applies(recording: Recording) -> bool:
@@ -54,11 +60,11 @@ def measure(recording: Recording) -> dict[str, Value]:
     force = 1e3 * series["wall_force"]
     size = np.hypot(force[..., 0], force[..., 1])
     found = {
-        "mean_force_y": averaged(force[..., 0], rows, "mN", note=SHEET),
-        "mean_force_z": averaged(force[..., 1], rows, "mN", note=SHEET),
-        "mean_moment": averaged(force[..., 2], rows, "mN m", note=SHEET),
-        "largest_force": over_worlds(size[rows.rows].max(axis=0), "mN", note=SHEET),
-        "largest_moment": over_worlds(np.abs(force[rows.rows, :, 2]).max(axis=0), "mN m", note=SHEET),
+        "mean_force_y": averaged(force[..., 0], rows, "mN", note=said(recording)),
+        "mean_force_z": averaged(force[..., 1], rows, "mN", note=said(recording)),
+        "mean_moment": averaged(force[..., ROLL], rows, "mN m", note=said(recording)),
+        "largest_force": over_worlds(size[rows.rows].max(axis=0), "mN", note=said(recording)),
+        "largest_moment": over_worlds(np.abs(force[rows.rows, :, ROLL]).max(axis=0), "mN m", note=said(recording)),
     }
     weight = cargo_weight(recording)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -84,7 +90,7 @@ def grain_mass(recording: Recording) -> np.ndarray:
 
 def _vertical(recording: Recording) -> np.ndarray:
     """Upward force on the tank (T, W) in the earth frame, N."""
-    force, angle = recording.series["wall_force"], between(recording.series["pose"][..., 2])
+    force, angle = recording.series["wall_force"], between(recording.series["pose"][..., ROLL])
     return np.sin(angle) * force[..., 0] + np.cos(angle) * force[..., 1]
 
 
@@ -99,13 +105,13 @@ def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray) -> 
         force, ratio = np.moveaxis([transfer(recording, part) for part in steady.parts], 0, 1)
     answer = np.abs(force) * np.exp(1j * np.angle(ratio))
     found = {
-        f"{kind}_amplitude": amplitude_value(1e3 * answer, unit, note=SHEET, missing=SHORT),
+        f"{kind}_amplitude": amplitude_value(1e3 * answer, unit, note=said(recording), missing=SHORT),
         f"{kind}_phase": phase_value(answer, np.zeros(recording.worlds), SHORT),
     }
     if name != "roll":
         mass = np.where(weight[-1] > 0, weight[-1], np.nan) / recording.preset.run.gravity
         found["effective_mass"] = with_halves(ratio.real / omega**2 / mass, "1", SHORT)
-    found["cargo_damping"] = with_halves(-ratio.imag / omega, per, SHORT, SHEET)
+    found["cargo_damping"] = with_halves(-ratio.imag / omega, per, SHORT, said(recording))
     return found
 
 
@@ -129,8 +135,8 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     upper.axhline(settled, color=GREY, ls=":", lw=1.0, label="weight of the cargo at the start")
     level(sheet, upper, values.get("mean_force_z"), "mean of z", VERMILION, (begin, time[-1]))
     upper.set_ylabel("force on the\ntank (mN)")
-    panels[0][0].set_title(SHEET, loc="right", fontsize=8, color=GREY)
-    band(lower, time[shown], force[shown, :, 2], GREEN, "moment about the middle of the floor")
+    panels[0][0].set_title(said(recording), loc="right", fontsize=8, color=GREY)
+    band(lower, time[shown], force[shown, :, ROLL], GREEN, "moment about the middle of the floor")
     level(sheet, lower, values.get("mean_moment"), "mean moment", GREEN, (begin, time[-1]))
     lower.set_ylabel("moment\n(mN m)")
     lower.set_xlabel("time (s)")

@@ -8,6 +8,7 @@ import numpy as np
 from lab.paint import palette
 from lab.paint.footage import Bed
 from lab.paint.water.gauges import hues_of
+from solvers.machine.quantity import ROLL
 
 MOST_SAMPLES = 800  # points per curve of the plot
 MOST_PLOTS = 2
@@ -55,7 +56,7 @@ def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
     """The main quantity of beds of grains, of empty tanks and of ships, against time or a steady tilt."""
     afloat = any(bed.footage.sea for bed in beds)
     still = afloat or any(bed.empty for bed in beds)
-    steady = not still and all(monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in beds)
+    steady = not still and all(monotonic(bed.footage.series_pose[:, bed.world, ROLL]) for bed in beds)
     label, measured = _quantity(beds)
     plot = Plot(("tilt φ (°)" if steady else "time (s)", label))
     for k in reversed(range(len(beds))):  # the beds that are shown on top
@@ -63,7 +64,7 @@ def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
         count = len(footage.series_time)
         kept = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).astype(int))
         time = footage.series_time[kept]
-        across = np.degrees(footage.series_pose[kept, world, 2]) if steady else time
+        across = np.degrees(footage.series_pose[kept, world, ROLL]) if steady else time
         plot.curves.append((across, measured(beds[k])[kept]))
         plot.colours.append(hues[k] if k < len(hues) else palette.LINE)
         plot.samples.append(time)

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solvers.machine.quantity import ROLL
+
 VERBS = {"capsized": "capsizes", "flooded": "floods", "sunk": "sinks"}
 
 
@@ -39,7 +41,7 @@ def ends(series: Mapping[str, np.ndarray]) -> list[End | None]:
     if "capsized" not in series or not len(series["time"]):
         return [None] * series["pose"].shape[1]
     # The world of a lost ship stops, so the last sample has her roll at that time.
-    capsized, roll = series["capsized"][-1], series["pose"][-1, :, 2]
+    capsized, roll = series["capsized"][-1], series["pose"][-1, :, ROLL]
     sunk = series["sunk"][-1] if "sunk" in series else [-1.0] * len(roll)
     rows = zip(capsized, series["flooded"][-1], roll, sunk, strict=True)
     return [end_of(*row) for row in rows]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from lab.preset.sections.video import colours_of
 from lab.recording.ship_end import End, end_of
 from lab.view.footage import LiveFootage
+from solvers.machine.quantity import ROLL
 
 SHOWN_FOR = 6.0  # s; how long a message is shown
 
@@ -69,7 +70,7 @@ class Shown:
             return None
         names = ("capsized", "flooded", *(("sunk",) if self.footage.leaks else ()))
         capsized, flooded, *sunk = (self.footage.row(self.frame, name) for name in names)
-        return end_of(capsized, flooded, self.footage.row(self.frame, "pose")[2], *sunk)
+        return end_of(capsized, flooded, self.footage.row(self.frame, "pose")[ROLL], *sunk)
 
     @property
     def colours(self) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 PLANE, SPACE = 2, 3  # numbers of axes
 DIRECTIONS = ("y", "z", "x")  # of the axes, in the order of all arrays
 ROTATIONS = ("pitch", "yaw", "roll")  # about these
+ROLL = -1  # of the freedoms of a body the last, in the plane and in space
 OWNERS = {
     "run": (),
     "world": ("world",),

@@ -7,6 +7,7 @@ import numpy as np
 from lab.paint.curves import monotonic
 from lab.paint.decorations import number
 from lab.paint.footage import Bed
+from solvers.machine.quantity import ROLL
 
 SMOOTH = 0.1  # s over which the rate of the shift is smoothed
 STRONG = 2.0  # times the mean rate of a shift, or the median of a pressure: what counts as an event
@@ -49,7 +50,7 @@ def _impact(bed: Bed) -> Event | None:
 def _avalanche(bed: Bed) -> Event | None:
     """The fastest shift of the grains' centre of mass in a tank that tilts steadily."""
     footage = bed.footage
-    tilt, time = footage.series_pose[:, bed.world, 2], footage.series_time
+    tilt, time = footage.series_pose[:, bed.world, ROLL], footage.series_time
     if bed.empty or footage.centre_of_mass is None or len(time) < 3 or not monotonic(tilt):
         return None
     centre = footage.centre_of_mass[:, bed.world]

@@ -7,6 +7,7 @@ import numpy as np
 
 from lab.paint.water.gauges import hues_of
 from lab.view.footage import LiveFootage
+from solvers.machine.quantity import ROLL
 
 MOST_POINTS = 130  # two pixels apart
 FARTHEST = 90.0  # deg of heel
@@ -43,7 +44,7 @@ def levers(footage: LiveFootage, frame: int) -> Drawing:
     heel, lever = footage.levers
     shown = np.degrees(heel) <= FARTHEST
     heel, lever = np.degrees(heel)[shown], 1e3 * lever[shown]
-    now = min(abs(np.degrees(footage.row(frame, "pose")[2])), FARTHEST)
+    now = min(abs(np.degrees(footage.row(frame, "pose")[ROLL])), FARTHEST)
     point = np.array([now]), np.interp([now], heel, lever)
     return Drawing("heel (°)", "righting lever GZ (mm)", [(heel, lever), point], [len(heel), 1])
 
@@ -68,7 +69,7 @@ def _at_gauges(label: str, name: str, of: str, scale: float):
 
 CURVES: dict[str, Callable[[LiveFootage, int], Drawing]] = {
     "shift": _in_time("shift Δy (diameters)", "centre_of_mass", _shift),
-    "turn": _in_time("tilt or roll φ (°)", "pose", lambda values, _: np.degrees(values[:, 2])),
+    "turn": _in_time("tilt or roll φ (°)", "pose", lambda values, _: np.degrees(values[:, ROLL])),
     "levers": levers,
     "energy": _in_time("kinetic energy (mJ)", "kinetic", lambda values, _: 1e3 * values),
     "contacts": _in_time("contacts", "contacts", lambda values, _: values),
