@@ -19,7 +19,7 @@ from solvers.motion.contact_pairs import limits_of_contacts
 from solvers.ship.vessel import Vessel
 from solvers.tank.given import Given
 from solvers.tank.parts import Part
-from solvers.tank.solids.solid import Prism
+from solvers.tank.solids.solid import Solid
 from solvers.tank.tank import BARE_THICKNESS, Tank
 
 Matter = TypeVar("Matter", bound=Given)
@@ -59,7 +59,7 @@ class Scene:
     thickness: float | None = None
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
-    solid: Prism | None = None
+    solid: Solid | None = None
     precision: str = "f64"
     schedule: str = "auto"
 
@@ -184,7 +184,7 @@ class Scene:
     def span(self) -> float:
         """Largest distance (m) of a corner of a tank from the tank's origin."""
         farthest = float(max(np.linalg.norm(tank.outline, axis=1).max() for tank in self.tanks))
-        return float(np.hypot(farthest, 0.5 * self.solid.along)) if self.solid else farthest
+        return float(np.hypot(farthest, self.solid.half(self.outline))) if self.solid else farthest
 
     def credible_speed(self) -> float:
         """Highest closing speed (m/s) to be expected: of a fall through the tank, or the tank's or a part's own.

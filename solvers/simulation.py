@@ -21,7 +21,7 @@ from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.ship.vessel import Vessel
 from solvers.tank.matter import Matter
-from solvers.tank.solids.prism import make_walls
+from solvers.tank.solids.making import make_walls
 from solvers.time import kept, watch
 from solvers.time.changes import up_to_change
 from solvers.time.clock import Clock

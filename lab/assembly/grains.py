@@ -32,7 +32,7 @@ def grain_count(preset: Preset) -> int:
     if grains.count is not None:
         return grains.count
     return count_for_depth(
-        grains.depth, np.array(preset.hold.corners), preset.sizes, fixed_grains(preset), preset.hold.along
+        grains.depth, np.array(preset.hold.corners), preset.sizes, fixed_grains(preset), preset.hold.solid
     )
 
 
@@ -55,10 +55,11 @@ def filling_outline(preset: Preset) -> np.ndarray:
         return outline
     count, largest = grain_count(preset), _farthest(preset)
     low = not (grains.surface == "disturbed" or preset.hold.open_edges)
-    along = preset.hold.along
-    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset), along)) >= count:
+    solid = preset.hold.solid
+    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset), solid)) >= count:
         return outline
-    return raised(outline, headroom(count, largest, preset.hold.extent[0], *([along] if along else [])))
+    across = [2.0 * solid.half(outline)] if solid else []
+    return raised(outline, headroom(count, largest, preset.hold.extent[0], *across))
 
 
 def _farthest(preset: Preset) -> float:
@@ -126,7 +127,7 @@ def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
     region = np.array(grains.place) if grains.place else None
     try:
         position = [
-            start_positions(size, outline, r, fixed, plates, thrown, region, preset.hold.along)
+            start_positions(size, outline, r, fixed, plates, thrown, region, preset.hold.solid)
             for size, r in zip(reach, random, strict=True)
         ]
     except DoesNotFit as error:

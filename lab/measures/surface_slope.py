@@ -78,7 +78,8 @@ def _find_course(recording: Recording) -> Course:
     frames = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).astype(int))
     tilt = recording.frames["pose"][:][frames, :, ROLL]
     slope, error = np.full(tilt.shape, np.nan), np.full(tilt.shape, np.nan)
-    along = recording.preset.tank.along
+    solid = recording.preset.tank.solid
+    along = 2.0 * solid.half(recording.outline) if solid else None
     for row, frame in enumerate(frames):
         position = recording.frames["position"][int(frame)].astype(float)
         for world in range(recording.worlds):

@@ -8,8 +8,7 @@ from solvers.machine.state import Scope, State
 from solvers.machine.units import Units
 from solvers.tank.load import Load
 from solvers.tank.pieces import Pieces
-from solvers.tank.solids.prism import PrismWalls
-from solvers.tank.walls import Walls
+from solvers.tank.solids.making import AnyWalls
 
 
 @dataclass(frozen=True)
@@ -29,7 +28,7 @@ class Context:
     axes: int
     bands: int
     per_particle: bool
-    walls: Walls | PrismWalls
+    walls: AnyWalls
     parts: Pieces
     pieces: int
     shares: np.ndarray | None

@@ -21,7 +21,8 @@ def content(table: object) -> Content:
     has = {name: kept.get(name) is not None for name in (*MATTERS, "material", "ship", "axle")}
     repeats = kept.get("run", {}).get("repeats", 1)
     matters = tuple(name for name in MATTERS if has[name])
-    axes = SPACE if kept.get("tank", {}).get("along") else PLANE
+    tank = kept.get("tank", {})
+    axes = SPACE if tank.get("along") or tank.get("turned") else PLANE
     parts = kept.get("parts", {}).items()
     bodies = tuple(name for name, part in parts if part.get("density") or part.get("mass"))
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))

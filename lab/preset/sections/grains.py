@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Literal
 
+import numpy as np
+
 from lab.base.errors import LabError
 from lab.preset.bed_file import MOST, MOTION, NEEDED, Grain, check_listed, check_radii, listed
 from lab.preset.fields import Columns, Table
@@ -14,6 +16,7 @@ from lab.preset.sections.tank import Tank
 from lab.preset.units import needed, show
 from solvers.grains.bed.sizes import Sizes
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
+from solvers.tank.solids.solid import Solid
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
 DENSEST_SPHERES = math.pi / math.sqrt(18)  # largest share of space that equal spheres fill (Hales 2005)
@@ -150,12 +153,12 @@ def check_room(
     largest, (width, height) = sizes.range[1], tank.extent
     if largest >= min(width, height):
         raise LabError(f"{size_key}: grains of up to {show(largest, 'm')} do not fit into the tank.")
-    along = (tank.along or largest) / largest
-    if width * height * along > MOST_PLACES * largest**2:
+    deep = 2.0 * tank.solid.half(np.array(tank.corners)) / largest if tank.solid else 1.0
+    if width * height * deep > MOST_PLACES * largest**2:
         raise LabError(f"{size_key}: grains of up to {show(largest, 'm')} are too small for so large a tank.")
     high, deep = show(height, "m"), show(grains.depth or 0.0, "m")
     if grains.depth is None:
-        _check_count(grains, sizes, grains.place or tank.corners, tank.along)
+        _check_count(grains, sizes, grains.place or tank.corners, tank.solid)
     elif grains.depth > height and tank.open_edges:
         raise LabError(f"grains.depth: {deep} is more than the tank's height, {high}.")
     elif grains.depth >= height and not tank.open_edges:
@@ -164,11 +167,13 @@ def check_room(
         raise LabError(f"grains.depth: {deep} is less than one grain, {show(mean, 'm')}.")
 
 
-def _check_count(grains: Grains, sizes: Sizes, outline: Sequence[Point], along: float | None) -> None:
-    """Raise LabError for more grains than the tank, `along` (m) long in space, has room for in the densest lattice."""
+def _check_count(grains: Grains, sizes: Sizes, outline: Sequence[Point], solid: Solid | None) -> None:
+    """Raise LabError for more grains than the tank, a `solid` in space, has room for in the densest lattice."""
     taken, room = grains.count * math.pi / 4 * sizes.mean_square, DENSEST * area(outline)
-    if along is not None:
-        taken, room = grains.count * math.pi / 6 * sizes.mean_cube, DENSEST_SPHERES * area(outline) * along
+    if solid is not None:
+        corners = np.array(outline)
+        volume = solid.volume(corners, float(np.ptp(corners[:, 1])))
+        taken, room = grains.count * math.pi / 6 * sizes.mean_cube, DENSEST_SPHERES * volume
     if taken > room:
         room = "region" if grains.region else "tank"
         raise LabError(f"grains.count: {grains.count} grains do not fit into the {room}.")

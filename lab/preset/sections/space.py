@@ -1,8 +1,11 @@
-"""Scenes in space: what of a preset goes with a tank that is drawn out along x, and what is of the plane alone."""
+"""Scenes in space: what goes with a tank that is drawn out along x or turned, and what is of the plane alone."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+
+import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.outline import Point
 from lab.preset.units import show
 
 PLANE_ALONE = {
@@ -12,11 +15,12 @@ PLANE_ALONE = {
     "shapes": "irregular grains are computed in the plane alone",
 }
 INTEGRATORS = "verlet", "symplectic-euler"
+EVEN = 1e-9  # of the section's width: by how much its two sides may differ
 
 
 def check_space(preset) -> None:
     """Raise LabError, one sentence, for a key of the plane alone in a preset (`lab.preset.schema.Preset`) in space."""
-    if preset.tank.along is None:
+    if preset.tank.solid is None:
         return
     for key, fault in _faults(preset):
         raise LabError(f"{key}: {fault}.")
@@ -25,21 +29,45 @@ def check_space(preset) -> None:
 def _faults(preset) -> Iterator[tuple[str, str]]:
     """The keys at fault, and why."""
     tank, grains = preset.tank, preset.grains
+    key_of_space = "tank.along" if tank.along else "tank.turned"
+    if tank.along and tank.turned:
+        yield "tank.turned", "a tank is either turned about its axis or drawn out; leave this out, or tank.along"
     for key, reason in PLANE_ALONE.items():
         if getattr(preset, key):
-            yield key, f"{reason}; leave this out, or tank.along"
+            yield key, f"{reason}; leave this out, or {key_of_space}"
     for key in ("thickness", "roughness", "length"):
         if getattr(tank, key) is not None:
-            why = "the tank is as thick as it is long" if key == "thickness" else "this is of the plane alone"
-            yield f"tank.{key}", f"{why} where tank.along is given; leave this out"
+            yield f"tank.{key}", f"this is of the plane alone; leave this out, or {key_of_space}"
+    if tank.turned:
+        yield from _faults_of_turned(preset)
     if preset.run.integrator not in INTEGRATORS:
         yield "run.integrator", f"in space it is {' or '.join(INTEGRATORS)} (got {preset.run.integrator})"
     if grains is None:
         return
     if grains.bed is not None:
-        yield "grains.bed", "a list of grains is of the plane alone; give count or depth, or leave out tank.along"
+        yield "grains.bed", f"a list of grains is of the plane alone; give count or depth, or leave out {key_of_space}"
     if grains.surface == "undisturbed":
         yield "grains.surface", "a bed is levelled in the plane alone; take slightly-disturbed or disturbed"
-    if preset.diameters[1] >= tank.along:
+    if tank.along and preset.diameters[1] >= tank.along:
         largest, along = show(preset.diameters[1], "m"), show(tank.along, "m")
         yield "tank.along", f"grains of up to {largest} do not fit into a tank {along} long; make it longer"
+
+
+def _faults_of_turned(preset) -> Iterator[tuple[str, str]]:
+    """The keys at fault in a tank that is turned about the axis z, and why."""
+    if not _is_even([preset.tank.corners]):
+        yield "tank.outline", "a tank that is turned has the same section on both sides of y = 0"
+    lines = [part.line for part in preset.parts.values()]
+    for name, part in preset.parts.items():
+        if part.moves or part.move[0]:
+            yield f"parts.{name}", 'in a tank that is turned a part moves up or down; give move = ["0 mm", …] alone'
+        if not _is_even(lines, part.line):
+            yield f"parts.{name}.points", "in a tank that is turned each part has its like on the other side of y = 0"
+
+
+def _is_even(lines: Sequence[Sequence[Point]], one: Sequence[Point] | None = None) -> bool:
+    """Whether a line, the first if none is given, has its mirror image among these, whatever corner it begins with."""
+    sought = np.array(sorted((-y, z) for y, z in (one or lines[0])))
+    slack = EVEN * max(float(np.ptp(sought, axis=0).max()), 1e-300)
+    found = (np.array(sorted(line)) for line in lines if len(line) == len(sought))
+    return any(np.allclose(line, sought, rtol=0.0, atol=slack) for line in found)

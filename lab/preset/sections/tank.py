@@ -13,7 +13,7 @@ from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit, Usual
 from solvers.machine.quantity import PLANE
 from solvers.tank.outline import top_edges
-from solvers.tank.solids.solid import Prism
+from solvers.tank.solids.solid import Prism, Solid, Turned
 
 MOST_LINING = 20_000  # grains that line a tank
 
@@ -77,6 +77,13 @@ class Tank(Shell):
             "spheres; without it the scene is plane."
         ),
     ] = None
+    turned: Annotated[
+        bool,
+        Doc(
+            "Whether the outline is a section through the vertical axis, turned about it, with all parts in it: the "
+            "scene is then in space, too."
+        ),
+    ] = False
     roughness: Annotated[
         Length | None,
         Of("grains"),
@@ -88,9 +95,9 @@ class Tank(Shell):
     ] = None
 
     @property
-    def solid(self) -> Prism | None:
+    def solid(self) -> Solid | None:
         """The solid that the outline stands for in space; None in the plane."""
-        return Prism(self.along) if self.along else None
+        return Turned() if self.turned else Prism(self.along) if self.along else None
 
     @property
     def axes(self) -> int:

@@ -15,9 +15,9 @@ from math import ceil, pi, sqrt
 import numpy as np
 
 from solvers.grains.bed.sizes import Sizes
-from solvers.machine.quantity import PLANE
 from solvers.space.axes import UP
 from solvers.tank.outline import free_area
+from solvers.tank.solids.solid import Solid
 
 # Area fraction of settled frictional discs: 0.82 (random close packing of discs, Berryman 1983) less the loose layers
 # at walls and surface; used only to convert a depth to a count.
@@ -38,16 +38,15 @@ class DoesNotFit(ValueError):
 
 
 def count_for_depth(
-    depth: float, outline: np.ndarray, sizes: Sizes, fixed: np.ndarray = NONE_FIXED, along: float | None = None
+    depth: float, outline: np.ndarray, sizes: Sizes, fixed: np.ndarray = NONE_FIXED, solid: Solid | None = None
 ) -> int:
     """Number of grains that fill a tank with `fixed` grains to a depth (m), at the packing of a settled bed.
 
-    In space the tank is `along` (m) long in x.
+    In space the outline stands for a `solid`.
     """
-    area = free_area(outline, depth, fixed)
-    if along is None:
-        return max(1, round(PACKING * area / (0.25 * pi * sizes.mean_square)))
-    return max(1, round(PACKING_OF_SPHERES * area * along / (pi / 6.0 * sizes.mean_cube)))
+    if solid is None:
+        return max(1, round(PACKING * free_area(outline, depth, fixed) / (0.25 * pi * sizes.mean_square)))
+    return max(1, round(PACKING_OF_SPHERES * solid.volume(outline, depth) / (pi / 6.0 * sizes.mean_cube)))
 
 
 def radii(count: int, diameter: float, spread: float, random: np.random.Generator) -> np.ndarray:
@@ -76,22 +75,23 @@ def start_positions(
     plates: Sequence[np.ndarray] = (),
     thrown: bool = False,
     region: np.ndarray | None = None,
-    along: float | None = None,
+    solid: Solid | None = None,
 ) -> np.ndarray:
     """Positions (n, axes) m on a randomly perturbed square lattice from the floor up, no two touching, by columns.
 
     They keep clear of the outline, of the `fixed` grains (k, 3) and of `plates`, polylines (m, 2), and within the
-    polygon `region` (m, 2) if there is one. In space the tank is `along` (m) long in x. If `thrown`, heaps of 3 grains
+    polygon `region` (m, 2) if there is one. In space the outline stands for a `solid`. If `thrown`, heaps of 3 grains
     along each axis are dropped on one another, uniformly over the width. Raises DoesNotFit if the lattice has fewer
     sites than there are grains.
     """
     reach = float(radius.max())
     lower, upper = outline.min(axis=0), outline.max(axis=0)
-    sites = lattice(reach, outline, fixed, plates, along)
+    sites = lattice(reach, outline, fixed, plates, solid)
     if region is not None:
-        sites = sites[_inside(sites[:, :PLANE], region)]
-    if along is not None:
-        lower, upper = [*lower, -0.5 * along], [*upper, 0.5 * along]
+        sites = sites[_inside(_section(sites, solid), region)]
+    if solid is not None:
+        half = solid.half(outline)
+        lower, upper = np.append(lower, -half), np.append(upper, half)
     if len(sites) < len(radius):
         room = "tank" if region is None else "region"
         size = f"{2e3 * reach:.3g} mm"
@@ -100,8 +100,9 @@ def start_positions(
         )
     chosen = sites[_thrown(np.delete(sites, UP, axis=1), len(radius), random)] if thrown else sites[: len(radius)]
     shaken = chosen + random.uniform(-1.0, 1.0, chosen.shape) * (SPACING - 1.0) * reach * 0.7
-    shaken = np.clip(shaken, np.add(lower, reach), np.subtract(upper, reach))
-    shaken = np.where(clear_of_walls(shaken[:, :PLANE], outline, reach, fixed, plates)[:, None], shaken, chosen)
+    shaken = np.clip(shaken, lower + reach, upper - reach)
+    clear = clear_of_walls(_section(shaken, solid), outline, reach, fixed, plates)
+    shaken = np.where(clear[:, None], shaken, chosen)
     # By columns, so that neighbours in space are neighbours in memory.
     return shaken[np.lexsort((chosen[:, UP], *np.delete(chosen, UP, axis=1).T[::-1]))]
 
@@ -111,11 +112,11 @@ def lattice(
     outline: np.ndarray,
     fixed: np.ndarray = NONE_FIXED,
     plates: Sequence[np.ndarray] = (),
-    along: float | None = None,
+    solid: Solid | None = None,
 ) -> np.ndarray:
     """Lattice sites (k, axes) m for grains of radii up to `reach` (m), row by row from the floor up.
 
-    In space the tank is `along` (m) long in x.
+    In space the outline stands for a `solid`.
     """
     pitch = 2.0 * SPACING * reach
     lower, upper = outline.min(axis=0), outline.max(axis=0)
@@ -125,14 +126,19 @@ def lattice(
         # Centre the columns in the width.
         sites_y += 0.5 * (upper[0] - reach - sites_y[-1])
     sites = np.stack(np.meshgrid(sites_y, sites_z), axis=-1).reshape(-1, 2)
-    sites = sites[clear_of_walls(sites, outline, reach, fixed, plates)] if len(sites) else sites
-    return sites if along is None else _drawn_out(sites, reach, along)
+    if solid is not None:
+        sites = _drawn_out(sites, pitch, solid.half(outline) - reach)
+    return sites[clear_of_walls(_section(sites, solid), outline, reach, fixed, plates)] if len(sites) else sites
 
 
-def _drawn_out(sites: np.ndarray, reach: float, along: float) -> np.ndarray:
-    """Sites (k, 3) m in space of a lattice in the plane, row by row from the floor up, centred along x."""
-    pitch = 2.0 * SPACING * reach
-    count = int((along - 2.0 * reach) / pitch + 1e-9) + 1 if along >= 2.0 * reach else 0
+def _section(points: np.ndarray, solid: Solid | None) -> np.ndarray:
+    """Points (n, axes) m in the axes in which the outline is drawn, (n, 2) m."""
+    return points if solid is None else solid.section(points)
+
+
+def _drawn_out(sites: np.ndarray, pitch: float, half: float) -> np.ndarray:
+    """Sites (k, 3) m in space of a lattice in the plane, row by row from the floor up, up to `half` (m) along x."""
+    count = int(2.0 * half / pitch + 1e-9) + 1 if half >= 0.0 else 0
     x = pitch * (np.arange(count) - 0.5 * (count - 1))
     return np.column_stack([np.repeat(sites, count, axis=0), np.tile(x, len(sites))])
 

@@ -61,7 +61,8 @@ class PrismWalls:
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the box round the tank, with a margin round an open one."""
         outline = self.section.outline
-        return self.section.margined(*self.solid.bounds(outline.min(axis=0), outline.max(axis=0)))
+        half = self.solid.half(outline)
+        return self.section.margined(np.append(outline.min(axis=0), -half), np.append(outline.max(axis=0), half))
 
     bounds_of_grains = bounds
 
@@ -210,10 +211,3 @@ def _rims(tank: Tank, half: float) -> tuple[list[np.ndarray], list[np.ndarray]]:
             through = across if walled[k] or walled[k - 1] else np.zeros(3)
             points.append(np.array([*outline[k], end, *along, *back, *through, 0.0]))
     return edges, points
-
-
-def make_walls(arrays: State, scene, pieces: Pieces) -> Walls | PrismWalls:
-    """The walls of a scene (`solvers.scene.Scene`)."""
-    if scene.solid is None:
-        return Walls(arrays, scene.tanks, pieces, scene.apart)
-    return PrismWalls(arrays, scene.tanks, pieces, scene.solid)
