@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.recording import Recording
+from solvers.machine.quantity import PLANE
 
 NEAR = 0.01  # of a mean diameter: how far a gate's end may be from the plate's
 
@@ -19,7 +20,7 @@ class Outlet:
     def lips_at(self, recording: Recording, frame: int) -> np.ndarray:
         """The lips (W, 2, 2), m, in a picture frame."""
         moved, carriers = recording.frames["part"][frame].astype(float), list(self.carriers)
-        lips = self.lips + moved[:, carriers]
+        lips = self.lips + moved[:, carriers, :PLANE]
         if "part_turn" in recording.frames:
             turn = recording.frames["part_turn"][frame].astype(float)[:, carriers]
             c, s, (y, z) = np.cos(turn), np.sin(turn), self.lips.T
