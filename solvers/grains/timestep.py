@@ -10,6 +10,7 @@ import numpy as np
 from solvers.grains.checks import FASTEST_STEP
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws.hertz import hertz_duration
+from solvers.grains.laws.splitting import NETWORK
 from solvers.grains.materials import Interface, Material
 from solvers.machine.limit import Limit
 
@@ -77,12 +78,13 @@ def limits(
     speed: float,
     laws: Iterable,
     share: float = 1.0,
+    network: float = 1.0,
 ) -> list[Limit]:
     """All bounds on the step for grains of at least the radius `smallest` (m) with closing speeds up to `speed` (m/s).
 
     `laws` are the contact laws of the scene; each gives its own limits (`limits`), of which firm ones are of stability,
     and may not be forced. `share` is the smallest share of its mass with which a grain resists a push on its outline:
-    less than 1 if the push also turns it.
+    less than 1 if the push also turns it. `network` is what packings bear, as the laws take it.
     """
     mass = share * 4.0 / 3.0 * pi * smallest**3 * grain.density
     shear = grain.young * scale / (2.0 * (1.0 + grain.poisson))
@@ -97,9 +99,10 @@ def limits(
         (interfaces[1], mass, smallest, "the smallest grain and a wall"),
     ):
         for law in laws:
+            law.network = network
             for limit in law.limits(between, m_eff, r_eff, speed):
                 reason = f"{limit.reason} of {name} at {speed:.3g} m/s"
-                found.append(replace(limit, reason=reason, forced=1.0 if limit.firm else FURTHEST))
+                found.append(replace(limit, reason=reason, forced=1.0 if limit.firm else sqrt(network) * FURTHEST))
     return sorted(found, key=lambda limit: limit.step)
 
 
@@ -128,7 +131,7 @@ def limits_of_grains(scene, speed: float) -> list[Limit]:
     `scene` is a `solvers.scene.Scene`; of its worlds the tightest counts.
     """
     grains = scene.grains
-    share = grains.shapes.least_mass if grains.shapes else 1.0
+    share, network = grains.shapes.least_mass if grains.shapes else 1.0, NETWORK[scene.axes]
     found: dict[tuple, list[Limit]] = {}
     for grain, rows in zip(grains.grain, grains.interfaces_of, strict=True):
         for a, b in product(range(grains.kinds), repeat=2):
@@ -136,7 +139,7 @@ def limits_of_grains(scene, speed: float) -> list[Limit]:
             lighter = min((grain, *grains.others)[a], (grain, *grains.others)[b], key=lambda kind: kind.density)
             key = lighter, (rows[a * grains.kinds + b], rows[grains.kinds**2 + a])
             if key not in found:
-                found[key] = limits(grains.sizes[0], *key, grains.stiffness_scale, speed, grains.laws, share)
+                found[key] = limits(grains.sizes[0], *key, grains.stiffness_scale, speed, grains.laws, share, network)
     integrator = INTEGRATORS[grains.integrator]
     reach, bearing = integrator.reach, integrator.bearing
     of = "" if reach == 1.0 else f"{reach:g} of "
@@ -145,7 +148,7 @@ def limits_of_grains(scene, speed: float) -> list[Limit]:
         replace(
             limit,
             step=reach * limit.step * (bearing if limit.firm else 1.0),
-            forced=min(limit.forced, bearing * FURTHEST),
+            forced=min(limit.forced, bearing * sqrt(network) * FURTHEST),
             reason=of + limit.reason,
         )
         for limit in tightest

@@ -6,6 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.integrators.verlet import Verlet
+from solvers.grains.laws.splitting import NETWORK
 from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
 from solvers.machine.units import Units
@@ -49,7 +50,7 @@ class ChosenLaws:
         self.cohesive = cohesion.pulls
         laws = (normal, tangential, rolling, *([cohesion] if self.cohesive else []))
         for law in laws:
-            law.integrator = integrator
+            law.integrator, law.network = integrator, NETWORK[axes]
         self.laws = laws
         self.fit = all(getattr(law, "wide", False) for law in laws)
         own, names = arrays.under("laws"), ("normal", "tangential", "rolling", "cohesion")[: len(laws)]

@@ -2,9 +2,10 @@
 
 import taichi as ti
 
-from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging
+from solvers.grains.laws.splitting import FOLLOWING, NETWORK, PROMPT, lagging
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 from solvers.machine.wide import minus
 from solvers.space.extremes import greater, lesser
 from solvers.space.tangent import capped, remembered
@@ -28,6 +29,7 @@ class ConstantTorque:
 
     wide = True
     constants = ("rolling_radius", "rolling_limit")
+    network = NETWORK[PLANE]  # set where the scene is known
     memory = tangents = ("rolling_followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -47,9 +49,9 @@ class ConstantTorque:
     def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, way: ti.template(), dt):
         """M (N m) of a block of contacts on their first grains; turning ω_i − ω_j in rad/s, F_n in N."""
         cap, limit = contacts.rolling_radius[w, block] * normal, contacts.rolling_limit[w, block]
-        share = lesser(FOLLOWING * TURNING * limit / greater(cap, SMALLEST_TORQUE), 1.0)
+        share = lesser(self.network * FOLLOWING * TURNING * limit / greater(cap, SMALLEST_TORQUE), 1.0)
         damping = cap * (1.0 / TURNING)
-        at_once = lesser(damping, PROMPT * limit)
+        at_once = lesser(damping, self.network * PROMPT * limit)
         turns = ti.static(range(len(turning)))
         before = remembered(contacts.rolling_followed, w, block, way)
         lag = lagging(damping - at_once, share, turning, before, cap)

@@ -2,9 +2,10 @@
 
 import taichi as ti
 
-from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging, relieved
+from solvers.grains.laws.splitting import FOLLOWING, NETWORK, PROMPT, lagging, relieved
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 from solvers.machine.wide import minus
 from solvers.space.extremes import greater, lesser
 from solvers.space.tangent import capped, length, remembered
@@ -27,6 +28,7 @@ class Coulomb:
 
     wide = True
     constants = ("limit",)
+    network = NETWORK[PLANE]  # set where the scene is known
     memory = tangents = ("followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -48,9 +50,9 @@ class Coulomb:
     ):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
+        share = lesser(self.network * FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
         damping = cap * (1.0 / SLIP)
-        at_once = lesser(damping, PROMPT * limit)
+        at_once = lesser(damping, self.network * PROMPT * limit)
         turns = ti.static(range(len(slip)))
         kept = relieved(root, rate, dt)
         fast = [at_once * slip[k] for k in turns]

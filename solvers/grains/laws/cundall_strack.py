@@ -4,9 +4,10 @@ import taichi as ti
 
 from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
-from solvers.grains.laws.splitting import AT_ONCE, shear_limit, spring_limit
+from solvers.grains.laws.splitting import AT_ONCE, NETWORK, shear_limit, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 from solvers.machine.wide import entry
 from solvers.space.axes import dot
 from solvers.space.extremes import within
@@ -32,6 +33,7 @@ class CundallStrack:
 
     wide = True
     constants = ("shear_spring", "shear_dashpot")
+    network = NETWORK[PLANE]  # set where the scene is known
     memory = tangents = ("stretched", "sliding")
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -43,9 +45,9 @@ class CundallStrack:
         """Longest steps (s) and what sets them."""
         stiffness = hertz_stiffness(between.young_modulus, radius)
         spring = spring_stiffness(self.coefficients(between)[1], stiffness, mass)
-        damped = shear_limit(spring, M_T * mass, between.dissipative_time)
+        damped = shear_limit(spring, M_T * mass, between.dissipative_time, self.network)
         return [
-            Limit(spring_limit(spring, M_T * mass), "the tangential spring"),
+            Limit(spring_limit(spring, M_T * mass, self.network), "the tangential spring"),
             Limit(damped, "the tangential spring and its dashpot"),
         ]
 
@@ -53,7 +55,7 @@ class CundallStrack:
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """k_t (N/m), stiffened for the step (`history`), and γ_t (N s/m), at most what the step resolves."""
         spring = spring_stiffness(c[1], stiffness, mass)
-        dashpot = ti.min(c[2] * spring, ti.max(AT_ONCE * M_T * mass / dt - 0.25 * spring * dt, 0.0))
+        dashpot = ti.min(c[2] * spring, ti.max(self.network * AT_ONCE * M_T * mass / dt - 0.25 * spring * dt, 0.0))
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping) * spring
         return ti.Vector([spring + spring * within(stiffer, STIFFEST), dashpot])
 

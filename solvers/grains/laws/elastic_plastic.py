@@ -5,9 +5,10 @@ from math import sqrt
 import taichi as ti
 
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
-from solvers.grains.laws.splitting import AT_ONCE, spring_limit
+from solvers.grains.laws.splitting import AT_ONCE, NETWORK, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 from solvers.machine.wide import entry, minus
 from solvers.space.axes import dot
 from solvers.space.tangent import capped, remembered
@@ -31,6 +32,7 @@ class ElasticPlastic:
 
     wide = True
     constants = ("rolling_radius", "rolling_spring", "rolling_dashpot")
+    network = NETWORK[PLANE]  # set where the scene is known
     memory = tangents = ("wound",)
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -43,14 +45,14 @@ class ElasticPlastic:
         """Longest steps (s) and what sets them."""
         stiffness = hertz_stiffness(between.young_modulus, radius)
         spring = spring_stiffness(self.coefficients(between)[1], stiffness, mass) * radius**2
-        return [Limit(spring_limit(spring, 0.4 * mass * radius**2), "the rolling spring")]
+        return [Limit(spring_limit(spring, 0.4 * mass * radius**2, self.network), "the rolling spring")]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """μ_r R_eff (m), k_r (N m) and C_r (N m s), at most what the step resolves, less the damping by S."""
         inertia = mass * radius * radius
         spring = spring_stiffness(c[1], stiffness, mass) * radius * radius
-        dashpot = ti.min(c[2] * ti.sqrt(spring * inertia), AT_ONCE * 0.4 * inertia / dt)
+        dashpot = ti.min(c[2] * ti.sqrt(spring * inertia), self.network * AT_ONCE * 0.4 * inertia / dt)
         led = self.integrator.ahead * spring * dt * self.integrator.damping
         return ti.Vector([c[0] * radius, spring, ti.max(dashpot - led, 0.0)])
 

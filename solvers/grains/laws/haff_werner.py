@@ -2,9 +2,10 @@
 
 import taichi as ti
 
-from solvers.grains.laws.splitting import FOLLOWING, PROMPT, lagging, relieved
+from solvers.grains.laws.splitting import FOLLOWING, NETWORK, PROMPT, lagging, relieved
 from solvers.grains.materials import Interface
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 from solvers.machine.wide import minus
 from solvers.space.extremes import greater, lesser
 from solvers.space.tangent import capped, length, remembered
@@ -25,12 +26,13 @@ class HaffWerner:
 
     wide = True
     constants = ("limit",)
+    network = NETWORK[PLANE]  # set where the scene is known
     memory = tangents = ("followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, γ_s in N s/m, 0.2/γ_s in m/(N s)]."""
         damping = between.shear_damping
-        return [between.friction, damping, FOLLOWING / damping if damping else 0.0]
+        return [between.friction, damping, self.network * FOLLOWING / damping if damping else 0.0]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[Limit]:
         """None: the damper is split, so that it is stable at any step."""
@@ -47,7 +49,7 @@ class HaffWerner:
     ):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share, at_once = lesser(c[2] * limit, 1.0), lesser(PROMPT * limit, c[1])
+        share, at_once = lesser(c[2] * limit, 1.0), lesser(self.network * PROMPT * limit, c[1])
         turns = ti.static(range(len(slip)))
         kept = relieved(root, rate, dt)
         fast = [at_once * slip[k] for k in turns]

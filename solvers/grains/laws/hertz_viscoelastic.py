@@ -6,8 +6,10 @@ import taichi as ti
 
 from solvers.grains.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
 from solvers.grains.laws.kick import cut_at_zero, reached
+from solvers.grains.laws.splitting import NETWORK
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 from solvers.space.extremes import greater
 
 BORNE = 2.0  # of the damper's derived step: longer ones are not stable in the most compressed packings
@@ -38,6 +40,7 @@ class HertzViscoelastic(Hertz):
     Units: F_n N, ξ m, ξ̇ m/s, k N/m^(3/2), γ_n N s/m^(3/2), A s, Y and E* Pa, R_eff m.
     """
 
+    network = NETWORK[PLANE]  # set where the scene is known
     constants = ("lag",)
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -54,7 +57,7 @@ class HertzViscoelastic(Hertz):
         """
         collision, x = hertz_duration(mass, radius, between.young_modulus, speed), damping(between, mass, radius, speed)
         steps = ELASTIC_STEPS * max(1.0, sqrt(x), x)
-        firm = BORNE * collision / (ELASTIC_STEPS * max(x, LEAST))
+        firm = self.network * BORNE * collision / (ELASTIC_STEPS * max(x, LEAST))
         return [
             Limit(collision / steps, f"1/{steps:.0f} of the Hertz collision"),
             Limit(firm, "what the normal damper bears", firm=True),

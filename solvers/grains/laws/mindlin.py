@@ -5,9 +5,10 @@ from math import sqrt
 import taichi as ti
 
 from solvers.grains.laws.history import M_T, STIFFEST, stiffening
-from solvers.grains.laws.splitting import AT_ONCE, shear_limit
+from solvers.grains.laws.splitting import AT_ONCE, NETWORK, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 from solvers.machine.wide import entry
 from solvers.space.axes import dot
 from solvers.space.extremes import greater, lesser, within
@@ -39,6 +40,7 @@ class Mindlin:
     wide = True
     constants = ("shear_limit", "shear_stiffer")
     tangents = ("stretched", "sliding")
+    network = NETWORK[PLANE]  # set where the scene is known
     memory = (*tangents, "root_before")
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -55,7 +57,7 @@ class Mindlin:
         k = hertz_stiffness(between.young_modulus, radius)
         root = (1.25 * mass * speed**2 / k) ** 0.2
         spring = self.coefficients(between)[1] * k * root
-        damped = shear_limit(spring, M_T * mass, between.dissipative_time)
+        damped = shear_limit(spring, M_T * mass, between.dissipative_time, self.network)
         return [
             Limit(sqrt(RESOLVED * M_T * mass / spring), "the tangential spring"),
             Limit(damped, "the tangential spring and its dashpot"),
@@ -65,7 +67,7 @@ class Mindlin:
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """The strongest damper, Δt k_t of the spring included (N s/m), and the step's stiffening (m/N)."""
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping)
-        return ti.Vector([AT_ONCE * M_T * mass / dt, stiffer])
+        return ti.Vector([self.network * AT_ONCE * M_T * mass / dt, stiffer])
 
     @ti.func
     def force(

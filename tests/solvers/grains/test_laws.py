@@ -11,6 +11,7 @@ from scipy.special import beta
 
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.laws.chosen import PAIR, ChosenLaws
+from solvers.grains.laws.splitting import NETWORK
 from solvers.grains.materials import hertz_stiffness, interface
 from solvers.grains.restitution import CONSTANT, FIRST_ORDER, VISCOELASTIC, damping_for, restitution
 from solvers.machine import runtime
@@ -58,6 +59,9 @@ class Driven:
             setattr(self, name, field)
         self.memories = len(self.memory)
         arrays.finish()
+        for law in self.laws.laws:
+            law.network = NETWORK[PLANE]  # what a step splits is not what is compared here
+        self.laws.learn([(between, between)])
         self.stiffness.fill(hertz_stiffness(between.young_modulus, RADIUS))
 
     def move(self, overlap, slip=0.0, turning=0.0, dt=DT):
