@@ -100,6 +100,7 @@ def grains_of(preset: Preset) -> tuple[Grains | None, np.ndarray]:
         tangential=preset.contact.tangential,
         rolling=preset.contact.rolling,
         cohesion=preset.contact.cohesion,
+        twisting=preset.contact.twisting,
         stiffness_scale=preset.stiffness_scale,
         sizes=(0.5 * low, 0.5 * high),
         fixed=fixed_grains(preset),

@@ -5,6 +5,7 @@ from itertools import chain
 import taichi as ti
 
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
+from solvers.grains.lists.gathering import differences, gathered, geometry
 from solvers.grains.lists.neighbours import Neighbours
 from solvers.grains.state import FAR, GrainState
 from solvers.machine.quantity import PLANE
@@ -68,8 +69,8 @@ class Contacts:
         for block in range(pairs.blocks(u)):
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
-            normal, distance, inverse, approach = self.geometry(g, i, j, reach, pairs.lanes)
-            velocity = self.differences(g.now, i, j, pairs.lanes)
+            normal, distance, inverse, approach = geometry(g, i, j, reach, pairs.lanes)
+            velocity = differences(g.now, i, j, pairs.lanes)
             spin_i = [gathered(field, i, pairs.lanes) for field in ti.static(g.spin_now)]
             spin_j = [gathered(field, j, pairs.lanes) for field in ti.static(g.spin_now)]
             lever_i = share * (reach + approach) - approach  # a gap, too, is shared, whichever grain is listed first
@@ -77,9 +78,11 @@ class Contacts:
             rate = minus(dot(velocity, normal))
             surfaces = [lever_i * spin_i[k] + lever_j * spin_j[k] for k in turns]
             slip = tangent.slip(velocity, normal, surfaces)
-            turning = tangent.across([spin_i[k] - spin_j[k] for k in turns], normal)
+            turned = [spin_i[k] - spin_j[k] for k in turns]
+            turning = tangent.across(turned, normal)
             way = tangent.way(velocity, normal, inverse, spin_i, spin_j, dt)
-            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, turning, way, dt)
+            fn, ft, rolling = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, turning, way, dt)
+            roll = self.laws.resisted(PAIR, pairs, u, block, approach, fn, turned, normal, rolling, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.cohesive_force(pairs, u, block, approach, rate, dt)
             force, arm, back = tangent.force(normal, fn, ft), tangent.arm(normal, ft), [minus(roll[k]) for k in turns]
@@ -150,33 +153,6 @@ class Contacts:
             self.load.book_noted(u, dt)
 
     @ti.func
-    def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
-        """Normals (towards the first grains), distances (m), one over these, and overlaps (m; negative: gaps)."""
-        if ti.static(g.mixed):
-            # The difference of squares in 64 bits: an overlap of 1e-7 m then has full 32-bit precision. Lane by lane,
-            # since real vectors cannot change their precision.
-            lanes = ti.static(range(count))
-            axes = ti.static(range(g.axes))
-            apart = [[g.place[a][0, i[k]] - g.place[a][0, j[k]] for a in axes] for k in lanes]
-            square = [dot(apart[k], apart[k]) for k in lanes]
-            whole = [ti.cast(reach[k], ti.f64) for k in lanes]
-            distance = ti.sqrt(ti.Vector([ti.cast(square[k], g.real) for k in lanes]))
-            inverse = 1.0 / distance
-            more = ti.Vector([ti.cast(whole[k] * whole[k] - square[k], g.real) for k in lanes])
-            along = [ti.Vector([ti.cast(apart[k][a], g.real) for k in lanes]) for a in axes]
-            return [along[a] * inverse for a in axes], distance, inverse, more / (reach + distance)
-        else:
-            apart = self.differences(g.place, i, j, count)
-            distance = ti.sqrt(dot(apart, apart))
-            inverse = 1.0 / distance
-            return [apart[a] * inverse for a in ti.static(range(g.axes))], distance, inverse, reach - distance
-
-    @ti.func
-    def differences(self, fields: ti.template(), i, j, count: ti.template()):
-        """Differences, i less j, of the values of grains along each axis for `count` pairs; one field per axis."""
-        return [gathered(field, i, count) - gathered(field, j, count) for field in ti.static(fields)]
-
-    @ti.func
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
         """Forces of the walls on the grains g."""
         w, load = self.units.world(u), self.nothing()
@@ -200,11 +176,14 @@ class Contacts:
             slip = tangent.slip(velocity, normal, [lever * spin[k] for k in turns])
             slips = [ti.Vector([slip[k]]) for k in turns]
             turned = self.walls.rate(feature, shift)
-            rolling = tangent.across([spin[k] - turned[k] for k in turns], normal)
+            relative = [spin[k] - turned[k] for k in turns]
+            rolling = tangent.across(relative, normal)
             turning = [ti.Vector([rolling[k]]) for k in turns]
             way = self.way_on_wall(normal, spin, turned, dt)
             met = ti.Vector([approach]), ti.Vector([rate])
-            fn, ft, roll = self.laws.forces(WALL, contacts, u, p, *met, slips, turning, way, dt)
+            fn, ft, against = self.laws.forces(WALL, contacts, u, p, *met, slips, turning, way, dt)
+            spun, facing = [ti.Vector([one]) for one in relative], [ti.Vector([one]) for one in normal]
+            roll = self.laws.resisted(WALL, contacts, u, p, met[0], fn, spun, facing, against, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.cohesive_force(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
             shear = [ft[k][0] for k in turns]
@@ -303,9 +282,3 @@ def is_some(force: ti.template()):
     for a in ti.static(range(1, len(force))):
         some = some or force[a] != 0.0
     return some
-
-
-@ti.func
-def gathered(field: ti.template(), places, count: ti.template()):
-    """The values of a grain field (W, stride) for `count` grains, by their indices into the whole field."""
-    return ti.Vector([field[0, places[k]] for k in ti.static(range(count))])

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
+from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL, TWISTING
 from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
 from solvers.machine import wide
@@ -23,7 +23,8 @@ class Grains(Given):
       What is derived for all worlds follows from `sizes`, so that a world does not depend on the others in its batch.
     - `grain`, `wall`: materials, one or one per world. `kind` (W, n) is 0 for grains of `grain` and counts on through
       `others`, None if there is one kind; `unlike`: the contact materials of pairs of kinds.
-    - `normal`, `tangential`, `rolling`, `cohesion`: names of the laws; `stiffness_scale`: the factor on Young's moduli.
+    - `normal`, `tangential`, `rolling`, `cohesion`, `twisting`: names of the laws; `stiffness_scale`: the
+      factor on Young's moduli.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
     - `fixed` (k, axes + 1): place and radius in m of grains that never move.
     - At the start: `start_speed` (m/s), highest closing speed of grains and walls; `velocity` (W, n, axes) m/s, `spin`
@@ -38,6 +39,7 @@ class Grains(Given):
     tangential: str = "haff-werner"
     rolling: str = "none"
     cohesion: str = "none"
+    twisting: str = "none"
     stiffness_scale: float = 1.0
     base_share: Annotated[float, LargestOfWorlds(), NotOfBed()] = 1.0
     start_speed: Annotated[float, LargestOfWorlds(), NotOfBed()] = 0.0
@@ -163,6 +165,11 @@ class Grains(Given):
     def laws(self) -> tuple:
         """The normal, tangential, rolling and cohesion laws."""
         return NORMAL[self.normal](), TANGENTIAL[self.tangential](), ROLLING[self.rolling](), COHESION[self.cohesion]()
+
+    @property
+    def twist_law(self):
+        """The law against twisting, in space."""
+        return TWISTING[self.twisting]()
 
     @property
     def longest_bridge(self) -> float:

@@ -32,7 +32,8 @@ def make_grains(scene, context: Context) -> GrainMatter:
     may_leave = any(tank.open_edges for tank in scene.tanks)
     state = given.radius, given.density, given.fixed, units.ghosts, may_leave, given.kind
     integrator = INTEGRATORS[given.integrator]()
-    laws = ChosenLaws(arrays, units, *given.laws, given.interfaces_of, given.kinds, integrator, context.axes)
+    between = given.interfaces_of, given.kinds
+    laws = ChosenLaws(arrays, units, *given.laws, *between, integrator, context.axes, given.twist_law)
     laws.wide = context.vectors if laws.fit and given.bears_vectors and not units.single else 0
     moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
     discs = given.shapes is None

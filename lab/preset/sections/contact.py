@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
+from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL, TWISTING
 from solvers.grains.shapes.given import CONTACTS
 from solvers.machine.marks import Cheap, Doc, Interval
 
@@ -17,6 +17,7 @@ class Contact:
     normal: Annotated[Literal[*NORMAL], Doc("Law of the normal force: repulsion and losses.")] = "hertz-viscoelastic"
     tangential: Annotated[Literal[*TANGENTIAL], Doc("Law of the tangential force: friction.")] = "haff-werner"
     rolling: Annotated[Literal[*ROLLING], Doc("Law of the torque against rolling.")] = "none"
+    twisting: Annotated[Literal[*TWISTING], Doc("Law of the torque about the normal, in space.")] = "none"
     cohesion: Annotated[Literal[*COHESION], Doc("Law of the pull of liquid between grains.")] = "none"
     stiffness_scale: Annotated[
         StiffnessScale | None,

@@ -21,6 +21,8 @@ EVEN = 1e-9  # of the section's width: by how much its two sides may differ
 def check_space(preset) -> None:
     """Raise LabError, one sentence, for a key of the plane alone in a preset (`lab.preset.schema.Preset`) in space."""
     if preset.tank.solid is None:
+        if preset.contact.twisting != "none":
+            raise LabError("contact.twisting: grains twist in space alone; give tank.along, or leave this out.")
         return
     for key, fault in _faults(preset):
         raise LabError(f"{key}: {fault}.")

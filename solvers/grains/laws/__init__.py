@@ -31,9 +31,11 @@ from solvers.grains.laws.hertz_viscoelastic import HertzViscoelastic
 from solvers.grains.laws.humid import Humid
 from solvers.grains.laws.hysteretic import Hysteretic
 from solvers.grains.laws.linear import Linear
+from solvers.grains.laws.marshall import Marshall
 from solvers.grains.laws.mindlin import Mindlin
 from solvers.grains.laws.no_cohesion import NoCohesion
 from solvers.grains.laws.no_rolling import NoRolling
+from solvers.grains.laws.no_twisting import NoTwisting
 from solvers.grains.laws.viscous import Viscous
 
 # Along the normal: repulsion and restitution.
@@ -55,5 +57,7 @@ TANGENTIAL = {
 }
 # Against relative rotation: rolling friction.
 ROLLING = {"none": NoRolling, "constant-torque": ConstantTorque, "elastic-plastic": ElasticPlastic}
+# Against relative rotation about the normal, in space: twisting friction.
+TWISTING = {"none": NoTwisting, "marshall": Marshall}
 # Across a gap: liquid bridges.
 COHESION = {"none": NoCohesion, "humid": Humid, "bridge": Bridge}

@@ -11,7 +11,7 @@ from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.machine.wide import enter, entry
-from solvers.space.axes import named_turns, turns
+from solvers.space.axes import dot, named_turns, turns
 from solvers.space.extremes import greater
 
 PAIR, WALL = 0, 1  # rows of the interfaces if all grains are of one kind
@@ -44,19 +44,22 @@ class ChosenLaws:
         kinds=1,
         integrator=Verlet,
         axes=PLANE,
+        twisting=None,
     ):
         self.units, self.kinds, self.damping = units, kinds, integrator.damping
         self.normal, self.tangential, self.rolling, self.cohesion = normal, tangential, rolling, cohesion
+        self.twisting, self.twists = twisting, twisting is not None and twisting.resists
         self.cohesive = cohesion.pulls
-        laws = (normal, tangential, rolling, *([cohesion] if self.cohesive else []))
+        used = {"normal": normal, "tangential": tangential, "rolling": rolling}
+        used |= ({"cohesion": cohesion} if self.cohesive else {}) | ({"twisting": twisting} if self.twists else {})
+        laws, self.numbers = tuple(used.values()), {name: number for number, name in enumerate(used)}
         for law in laws:
             law.integrator, law.network = integrator, NETWORK[axes]
         self.laws = laws
         self.fit = all(getattr(law, "wide", False) for law in laws)
-        own, names = arrays.under("laws"), ("normal", "tangential", "rolling", "cohesion")[: len(laws)]
+        own = arrays.under("laws")
         self.tables = [
-            own.holding(name, self.tabulate(law, interfaces), "world row coefficient")
-            for name, law in zip(names, laws, strict=True)
+            own.holding(name, self.tabulate(law, interfaces), "world row coefficient") for name, law in used.items()
         ]
         self.constants = tuple(name for law in laws for name in law.constants)
         self.counts = tuple(len(law.constants) for law in laws)
@@ -125,14 +128,9 @@ class ChosenLaws:
     @ti.func
     def prepare(self, kind: ti.template(), contacts: ti.template(), u, block, lane, mass, radius, dt):
         """Compute the laws' constants of a newly listed contact, m_eff in kg, R_eff in m, Δt in s."""
-        self.prepare_law(self.normal, 0, 0, kind, contacts, u, block, lane, mass, radius, dt)
-        first = ti.static(self.counts[0])
-        self.prepare_law(self.tangential, 1, first, kind, contacts, u, block, lane, mass, radius, dt)
-        first_rolling = ti.static(self.counts[0] + self.counts[1])
-        self.prepare_law(self.rolling, 2, first_rolling, kind, contacts, u, block, lane, mass, radius, dt)
-        if ti.static(self.cohesive):
-            first_cohesion = ti.static(sum(self.counts[:3]))
-            self.prepare_law(self.cohesion, 3, first_cohesion, kind, contacts, u, block, lane, mass, radius, dt)
+        for which in ti.static(range(len(self.laws))):
+            first = ti.static(sum(self.counts[:which]))
+            self.prepare_law(self.laws[which], which, first, kind, contacts, u, block, lane, mass, radius, dt)
 
     @ti.func
     def prepare_law(
@@ -214,6 +212,32 @@ class ChosenLaws:
         return shearing, torque
 
     @ti.func
+    def resisted(
+        self,
+        kind: ti.template(),
+        contacts: ti.template(),
+        u,
+        block,
+        approach,
+        pressing,
+        turning: ti.template(),
+        normal: ti.template(),
+        roll: ti.template(),
+        dt,
+    ):
+        """Torques (N m) of a block of contacts against rolling, `roll`, and twisting, if anything resists that.
+
+        `turning` is ω_i − ω_j (rad/s), `pressing` F_n (N).
+        """
+        if ti.static(not self.twists):
+            return roll
+        else:
+            coefficients = self.coefficients(self.numbers["twisting"], u, kind, contacts, block)
+            root, rate = ti.sqrt(greater(approach, 0.0)), dot(turning, normal)
+            twist = self.twisting.torque(coefficients, contacts, u, block, root, pressing, rate, dt)
+            return [roll[k] + twist * normal[k] for k in ti.static(range(len(normal)))]
+
+    @ti.func
     def cohesive_force(self, contacts: ti.template(), u, block, approach, rate, dt):
         """Cohesive forces (N) of a block of contacts with overlap `approach` (m; negative: a gap) and its rate (m/s).
 
@@ -228,7 +252,11 @@ class ChosenLaws:
         pressed = self.pressed_energy(contacts, u, p, overlap)
         tangential_c = self.coefficients_of_one(1, u, kind, contacts, block, lane)
         sheared = self.tangential.energy(tangential_c, contacts, u, block, lane, root)
-        return pressed + sheared + self.rolling.energy(contacts, u, block, lane)
+        stored = pressed + sheared + self.rolling.energy(contacts, u, block, lane)
+        if ti.static(self.twists):
+            twisting_c = self.coefficients_of_one(self.numbers["twisting"], u, kind, contacts, block, lane)
+            stored += self.twisting.energy(twisting_c, contacts, u, block, lane, root)
+        return stored
 
     @ti.func
     def pressed_energy(self, contacts: ti.template(), u, p, overlap):

@@ -2,8 +2,9 @@
 
 import taichi as ti
 
-from solvers.grains.contacts import Contacts, gathered
+from solvers.grains.contacts import Contacts
 from solvers.grains.laws.chosen import PAIR, WALL
+from solvers.grains.lists.gathering import gathered
 from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, SURE
 from solvers.machine.wide import enter, entry, minus
 from solvers.space.extremes import greater, lesser

@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.grains.contacts import gathered
+from solvers.grains.lists.gathering import gathered
 from solvers.grains.lists.neighbours import LANES
 from solvers.grains.lists.validity import NEVER
 from solvers.machine.state import Axis, State
