@@ -27,13 +27,13 @@ from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
 from lab.preset.sections.motion import Motion, check_motion
+from lab.preset.sections.naval.ship_checks import check_ship
 from lab.preset.sections.naval.stability import Stability, check_stability
 from lab.preset.sections.parts import Part, check_parts
 from lab.preset.sections.run import Run, duration_of
 from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
 from lab.preset.sections.ship import Ship
-from lab.preset.sections.ship_checks import check_ship
 from lab.preset.sections.space import check_space
 from lab.preset.sections.tank import FurtherTank, Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video

@@ -16,6 +16,8 @@ class GrainState:
     `place` (m), `velocity` and `now` (m/s) and `force` (N) are lists with an array for each of the `axes`, `angle`,
     `spin` and `spin_now` (rad, rad/s) and `torque` (N m) for each of the `turns`, the axes about which grains turn.
 
+    With a `period` (m) space repeats itself along the last axis (`nearest`, `fold`).
+
     A disc has the mass and inertia of the sphere it stands for. `velocity` and `spin` are what the integrator keeps;
     `now` and `spin_now` are their values at the positions' own time, for forces that depend on velocity. Grains that
     may leave the tank have `spilled` set once they are out of it, and `present` cleared once they are far away. `reach`
@@ -35,6 +37,7 @@ class GrainState:
         may_leave: bool,
         kind: np.ndarray | None = None,
         spread: np.ndarray | float = 1.0,
+        period: float | None = None,
     ):
         self.axes, self.turns, self.fixed = axes, turns(axes), fixed
         self.worlds, self.mobile = radius.shape
@@ -50,6 +53,9 @@ class GrainState:
         self.velocity, self.spin = self._both(own, "velocity", "spin")
         self.now, self.spin_now = self._both(own, "now", "spin_now")
         self.force, self.torque = self._both(own, "force", "torque")
+        self.periodic = period is not None
+        if self.periodic:
+            self.period = own.holding("period", np.array([period, 0.5 * period]), "number", own.place)
         self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
         self.radius = own.holding("radius", self._filled(radius, fixed[:, -1], 0.0), each, kept=True)
         self.reach = self.radius
@@ -113,6 +119,9 @@ class GrainState:
         )
         if self.turns == 1:
             angle, spin = angle[..., 0], spin[..., 0]
+        if self.periodic:
+            whole = float(self.period.to_numpy()[0])
+            position[..., -1] -= whole * np.round(position[..., -1] / whole)
         if self.may_leave:
             position[self.present.to_numpy()[:, : self.mobile] == 0.0] = np.nan
         return {"position": position, "velocity": velocity, "angle": angle, "spin": spin}
@@ -147,7 +156,31 @@ class GrainState:
     @ti.func
     def between(self, w, i, j):
         """The centre of grain i less that of j (m), with the digits of places."""
-        return [self.place[a][w, i] - self.place[a][w, j] for a in ti.static(range(self.axes))]
+        return self.nearest([self.place[a][w, i] - self.place[a][w, j] for a in ti.static(range(self.axes))])
+
+    @ti.func
+    def nearest(self, apart: ti.template()):
+        """The difference (m) of two places, to the nearest image where space repeats itself along the last axis."""
+        if ti.static(not self.periodic):
+            return apart
+        else:
+            along, whole, half = apart[self.axes - 1], self.period[0], self.period[1]
+            along = ti.select(along > half, along - whole, ti.select(along < -half, along + whole, along))
+            return [apart[a] if ti.static(a < self.axes - 1) else along for a in ti.static(range(self.axes))]
+
+    @ti.func
+    def fold(self, w, i):
+        """Bring grain i back where it has gone past the end of a space that repeats itself.
+
+        Done where lists are built, so that no step has to; in between it goes no farther than these bear.
+        """
+        if ti.static(self.periodic):
+            last = ti.static(self.axes - 1)
+            along, whole, half = self.place[last][w, i], self.period[0], self.period[1]
+            if along > half:
+                self.place[last][w, i] = along - whole
+            elif along < -half:
+                self.place[last][w, i] = along + whole
 
     @ti.func
     def remove(self, w, i):

@@ -29,21 +29,28 @@ class Places(Protocol):
 class Cells:
     """Square cells no smaller than the reach of a contact, and not more than a few per grain.
 
-    `shape` is the number of cells along each axis. Cells are numbered in rows along the first axis.
+    `shape` is the number of cells along each axis. Cells are numbered in rows along the first axis. With `wraps` those
+    at both ends of the last axis are neighbours.
 
     The grains of cell c are `sorted[w, first[w, c]]` to `sorted[w, first[w, c + 1] - 1]`, in the order of their
     numbers. Grains that have left the scene are in an extra cell after the last, which is no cell's neighbour.
     """
 
-    def __init__(self, arrays: State, grains: Places, lower: np.ndarray, upper: np.ndarray, reach: float):
-        self.grains = grains
+    def __init__(
+        self, arrays: State, grains: Places, lower: np.ndarray, upper: np.ndarray, reach: float, wraps: bool = False
+    ):
+        self.grains, self.wraps = grains, wraps
         extent, self.axes = upper - lower, grains.axes
         size = max(reach, float(np.prod(extent) / (4.0 * grains.count + 64.0)) ** (1.0 / self.axes))
         # In an array, not compiled in, so that scenes that differ in lengths only share a compiled kernel.
         own, world = arrays.under("cells"), Axis("world", grains.worlds)
-        lengths = np.array([*lower, size])  # the origin, and the size of a cell
+        # A whole number of cells goes round where space repeats itself
+        last = extent[-1] / max(1, int(extent[-1] / size)) if wraps else size
+        lengths = np.array([*lower, size, last])  # the origin, the size of a cell, and that along the last axis
         self.lengths = own.holding("lengths", lengths, "number", own.place)
         self.shape = tuple(int(length / size) + 1 for length in extent)
+        if wraps:
+            self.shape = (*self.shape[:-1], max(1, int(extent[-1] / size)))
         self.strides = tuple(prod(self.shape[:a]) for a in range(self.axes))  # from a cell to the next along an axis
         self.cells = prod(self.shape)
         self.chunks = -(-(self.cells + 2) // CHUNK)
@@ -57,7 +64,8 @@ class Cells:
         """The cell of a grain; outside the grid, the nearest cell."""
         cell = 0
         for a in ti.static(range(self.axes)):
-            along = ti.cast((self.grains.place[a][w, i] - self.lengths[a]) / self.lengths[self.axes], ti.i32)
+            size = self.lengths[self.axes + (1 if ti.static(self.wraps and a == self.axes - 1) else 0)]
+            along = ti.cast((self.grains.place[a][w, i] - self.lengths[a]) / size, ti.i32)
             cell += self.strides[a] * ti.max(0, ti.min(self.shape[a] - 1, along))
         if ti.static(self.grains.may_leave):  # noqa: SIM102 (compiled only for open tanks)
             if self.grains.present[w, i] == 0.0:
@@ -78,6 +86,10 @@ class Cells:
             at[a] = at[a] % self.shape[a]
         lower = [ti.max(0, at[a] - rings) for a in ti.static(range(self.axes))]
         upper = [ti.min(self.shape[a] - 1, at[a] + rings) for a in ti.static(range(self.axes))]
+        if ti.static(self.wraps):
+            last = ti.static(self.axes - 1)
+            lower[last] = at[last] - rings
+            upper[last] = lower[last] + ti.min(2 * rings, self.shape[last] - 1)
         return lower, upper
 
     @ti.func
@@ -97,7 +109,10 @@ class Cells:
             if ti.static(a < self.axes - 1):
                 span = upper[a] - lower[a] + 1
                 along, rest = rest % span, rest // span
-            cell += self.strides[a] * (lower[a] + along)
+            at = lower[a] + along
+            if ti.static(self.wraps and a == self.axes - 1):
+                at = (at + 2 * self.shape[a]) % self.shape[a]
+            cell += self.strides[a] * at
         return cell
 
     @ti.func

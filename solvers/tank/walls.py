@@ -76,10 +76,7 @@ class Walls:
         return self._box(self.within)
 
     def _box(self, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return self.margined(corners.min(axis=0), corners.max(axis=0))
-
-    def margined(self, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Corners (m) of a box round a tank, with a margin if it is open."""
+        lower, upper = corners.min(axis=0), corners.max(axis=0)
         margin = BEYOND * (upper - lower) if self.open else 0.0
         return lower - margin, upper + margin
 

@@ -15,11 +15,14 @@ PLANE_ALONE = {
     "shapes": "irregular grains are computed in the plane alone",
 }
 INTEGRATORS = "verlet", "symplectic-euler"
+SHORTEST = 5.0  # diameters of a slice: a grain must not meet two images of another
 EVEN = 1e-9  # of the section's width: by how much its two sides may differ
 
 
 def check_space(preset) -> None:
     """Raise LabError, one sentence, for a key of the plane alone in a preset (`lab.preset.schema.Preset`) in space."""
+    if preset.tank.periodic and not preset.tank.along:
+        raise LabError("tank.periodic: goes with the length of a slice; give tank.along, or leave this out.")
     if preset.tank.solid is None:
         if preset.contact.twisting != "none":
             raise LabError("contact.twisting: grains twist in space alone; give tank.along, or leave this out.")
@@ -50,9 +53,10 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
         yield "grains.bed", f"a list of grains is of the plane alone; give count or depth, or leave out {key_of_space}"
     if grains.surface == "undisturbed":
         yield "grains.surface", "a bed is levelled in the plane alone; take slightly-disturbed or disturbed"
-    if tank.along and preset.diameters[1] >= tank.along:
-        largest, along = show(preset.diameters[1], "m"), show(tank.along, "m")
-        yield "tank.along", f"grains of up to {largest} do not fit into a tank {along} long; make it longer"
+    largest = preset.diameters[1]
+    if tank.along and tank.along <= largest * (SHORTEST if tank.periodic else 1.0):
+        least = f"{SHORTEST:g} of the largest grains, " if tank.periodic else "one grain, "
+        yield "tank.along", f"must be more than {least}{show(largest, 'm')} each (got {show(tank.along, 'm')})"
 
 
 def _faults_of_turned(preset) -> Iterator[tuple[str, str]]:

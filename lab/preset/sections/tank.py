@@ -77,6 +77,13 @@ class Tank(Shell):
             "spheres; without it the scene is plane."
         ),
     ] = None
+    periodic: Annotated[
+        bool,
+        Doc(
+            "Whether there are no end walls in space: the tank is a slice of one without an end, and what leaves it on "
+            "one side enters on the other."
+        ),
+    ] = False
     turned: Annotated[
         bool,
         Doc(
@@ -97,7 +104,7 @@ class Tank(Shell):
     @property
     def solid(self) -> Solid | None:
         """The solid that the outline stands for in space; None in the plane."""
-        return Turned() if self.turned else Prism(self.along) if self.along else None
+        return Turned() if self.turned else Prism(self.along, self.periodic) if self.along else None
 
     @property
     def axes(self) -> int:

@@ -100,7 +100,10 @@ def start_positions(
         )
     chosen = sites[_thrown(np.delete(sites, UP, axis=1), len(radius), random)] if thrown else sites[: len(radius)]
     shaken = chosen + random.uniform(-1.0, 1.0, chosen.shape) * (SPACING - 1.0) * reach * 0.7
-    shaken = np.clip(shaken, lower + reach, upper - reach)
+    inner = np.full(len(lower), reach)
+    if solid is not None and solid.period:
+        inner[-1] = 0.0  # no wall is there
+    shaken = np.clip(shaken, lower + inner, upper - inner)
     clear = clear_of_walls(_section(shaken, solid), outline, reach, fixed, plates)
     shaken = np.where(clear[:, None], shaken, chosen)
     # By columns, so that neighbours in space are neighbours in memory.
@@ -127,7 +130,7 @@ def lattice(
         sites_y += 0.5 * (upper[0] - reach - sites_y[-1])
     sites = np.stack(np.meshgrid(sites_y, sites_z), axis=-1).reshape(-1, 2)
     if solid is not None:
-        sites = _drawn_out(sites, pitch, solid.half(outline) - reach)
+        sites = _drawn_out(sites, pitch, solid, solid.half(outline) - reach)
     return sites[clear_of_walls(_section(sites, solid), outline, reach, fixed, plates)] if len(sites) else sites
 
 
@@ -136,9 +139,12 @@ def _section(points: np.ndarray, solid: Solid | None) -> np.ndarray:
     return points if solid is None else solid.section(points)
 
 
-def _drawn_out(sites: np.ndarray, pitch: float, half: float) -> np.ndarray:
+def _drawn_out(sites: np.ndarray, pitch: float, solid: Solid, half: float) -> np.ndarray:
     """Sites (k, 3) m in space of a lattice in the plane, row by row from the floor up, up to `half` (m) along x."""
     count = int(2.0 * half / pitch + 1e-9) + 1 if half >= 0.0 else 0
+    if solid.period:  # all round, evenly
+        count = int(solid.period / pitch)
+        pitch = solid.period / max(1, count)
     x = pitch * (np.arange(count) - 0.5 * (count - 1))
     return np.column_stack([np.repeat(sites, count, axis=0), np.tile(x, len(sites))])
 

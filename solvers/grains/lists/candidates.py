@@ -97,6 +97,7 @@ class Candidates:
         if self.renewed[w] == 1:
             self.known[w] = 1
             for i in range(self.grains.mobile):
+                self.grains.fold(w, i)
                 for a in ti.static(range(self.grains.axes)):
                     self.seen[a][w, i] = self.grains.place[a][w, i]
         return self.renewed[w] == 1
@@ -130,7 +131,7 @@ class Candidates:
                 row = c.row(lower, upper, n)
                 for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
                     j = c.sorted[w, k]
-                    apart = [place[a] - g.place[a][w, j] for a in ti.static(range(g.axes))]
+                    apart = g.nearest([place[a] - g.place[a][w, j] for a in ti.static(range(g.axes))])
                     far = reach + g.reach[w, j]
                     self.mate[u, ti.min(found, last)] = j
                     found += self.mine(i, j, start, end) & ti.cast(dot(apart, apart) < far * far, ti.i32)

@@ -19,7 +19,7 @@ def geometry(g: ti.template(), i, j, reach, count: ti.template()):
         # since real vectors cannot change their precision.
         lanes = ti.static(range(count))
         axes = ti.static(range(g.axes))
-        apart = [[g.place[a][0, i[k]] - g.place[a][0, j[k]] for a in axes] for k in lanes]
+        apart = [g.nearest([g.place[a][0, i[k]] - g.place[a][0, j[k]] for a in axes]) for k in lanes]
         square = [dot(apart[k], apart[k]) for k in lanes]
         whole = [ti.cast(reach[k], ti.f64) for k in lanes]
         distance = ti.sqrt(ti.Vector([ti.cast(square[k], g.real) for k in lanes]))
@@ -28,7 +28,7 @@ def geometry(g: ti.template(), i, j, reach, count: ti.template()):
         along = [ti.Vector([ti.cast(apart[k][a], g.real) for k in lanes]) for a in axes]
         return [along[a] * inverse for a in axes], distance, inverse, more / (reach + distance)
     else:
-        apart = differences(g.place, i, j, count)
+        apart = g.nearest(differences(g.place, i, j, count))
         distance = ti.sqrt(dot(apart, apart))
         inverse = 1.0 / distance
         return [apart[a] * inverse for a in ti.static(range(g.axes))], distance, inverse, reach - distance

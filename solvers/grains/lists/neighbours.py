@@ -76,7 +76,8 @@ class Neighbours:
         own = arrays.under("lists")
         self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
         self.walled = not units.single and not walls.moving  # whether candidates know the walls
-        self.cells = Cells(arrays, grains, *walls.bounds_of_grains, 2.0 * reach + skin.farthest)
+        bounds = walls.bounds_of_grains
+        self.cells = Cells(arrays, grains, *bounds, 2.0 * reach + skin.farthest, grains.periodic)
         boxes = Boxes(arrays, grains, self.cells) if skin.together else None
         if not units.single:
             self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across, boxes, reach)
@@ -105,6 +106,9 @@ class Neighbours:
         self.skin.adapt(w)
         if ti.static(not self.units.single):
             anew = self.candidates.renew(w, self.skin.apart(w))
+        elif ti.static(self.grains.periodic):
+            for i in range(self.grains.mobile):
+                self.grains.fold(w, i)
         if anew:
             self.cells.sort_world(w)
 
@@ -145,7 +149,7 @@ class Neighbours:
     @ti.func
     def near(self, g: ti.template(), w, i, j):
         """Whether two grains are near enough to be listed."""
-        apart = [g.place[a][w, i] - g.place[a][w, j] for a in ti.static(range(g.axes))]
+        apart = g.between(w, i, j)
         far = g.reach[w, i] + self.skin.margin(w) + g.reach[w, j]
         return dot(apart, apart) < far * far
 

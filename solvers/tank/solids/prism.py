@@ -10,7 +10,7 @@ from solvers.machine.state import State
 from solvers.tank.pieces import Pieces
 from solvers.tank.solids.solid import Prism
 from solvers.tank.tank import Tank
-from solvers.tank.walls import NOWHERE, Walls
+from solvers.tank.walls import BEYOND, NOWHERE, Walls
 
 # Columns of a rim's row: its start (m), then three vectors, its length (m).
 #   An edge: its direction, and the directions from it into the two walls that meet there, zero where there is none.
@@ -33,7 +33,7 @@ class PrismWalls:
         self.section = Walls(arrays, tanks, pieces)
         self.tanks, self.pieces, self.parts = self.section.tanks, self.section.pieces, self.section.parts
         self.moved, self.moving, self.fastest = pieces, pieces.moving, pieces.fastest
-        self.solid, self.open = solid, self.section.open
+        self.solid, self.open, self.ends = solid, self.section.open, 0 if solid.periodic else 2
         own = arrays.under("prism")
         half = 0.5 * solid.along
         far = self.bounds[1][-1]
@@ -43,26 +43,28 @@ class PrismWalls:
             "sides", np.column_stack([outline, np.roll(outline, -1, axis=0)]), "side number", own.place
         )
         self.count = len(outline)
-        edges, points = _rims(tanks[0], half) if self.open else ([], [])
+        edges, points = _rims(tanks[0], half) if self.open and self.ends else ([], [])
         self.edges, self.points = len(edges), len(points)
-        rims = np.array([*edges, *points]) if self.open else np.zeros((1, LENGTH + 1))
+        rims = np.array([*edges, *points] or [np.zeros(LENGTH + 1)])
         self.rims = own.holding("rims", rims, "rim number", own.place)
         self.drawn = self.section.features  # those of the outline and of plates
-        self.features = self.drawn + 2 + self.edges + self.points
-        self.real = arrays.real
+        self.features, self.real = self.drawn + self.ends + self.edges + self.points, arrays.real
 
     @property
     def said(self) -> str:
         """Its features in words."""
         rims = f", {self.edges} edges and {self.points} points round these" if self.open else ""
-        return f"{self.section.said}, drawn out along x, and 2 end walls{rims}"
+        ends = f", and 2 end walls{rims}" if self.ends else " without an end"
+        return f"{self.section.said}, drawn out along x{ends}"
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the box round the tank, with a margin round an open one."""
         outline = self.section.outline
-        half = self.solid.half(outline)
-        return self.section.margined(np.append(outline.min(axis=0), -half), np.append(outline.max(axis=0), half))
+        half, (lower, upper) = self.solid.half(outline), self.section.bounds
+        if self.ends and self.open:
+            half *= 1.0 + 2.0 * BEYOND
+        return np.append(lower, -half), np.append(upper, half)
 
     bounds_of_grains = bounds
 
@@ -102,13 +104,13 @@ class PrismWalls:
         if feature < self.drawn:
             flat = self.section.gap(feature, shift, y, z)
             found = ti.Vector([flat[0], flat[1], flat[2], 0.0 * y])
-            if ti.static(self.open):  # noqa: SIM102 (compiled only where grains may be beside the tank)
+            if ti.static(self.open and self.ends > 0):  # noqa: SIM102 (only where grains may be beside the tank)
                 if ti.abs(x) > self.half[0]:
                     found[0] = NOWHERE
-        elif feature < self.drawn + 2:
+        elif feature < self.drawn + self.ends:
             found = self.gap_of_end(feature - self.drawn, y, z, x)
-        elif ti.static(self.open):
-            found = self.gap_of_rim(feature - self.drawn - 2, y, z, x)
+        elif ti.static(self.edges > 0):
+            found = self.gap_of_rim(feature - self.drawn - self.ends, y, z, x)
         return found
 
     @ti.func
@@ -170,10 +172,10 @@ class PrismWalls:
         found = False
         if feature < self.drawn:
             found = self.section.near(feature, shift, reach, y, z)
-        elif feature < self.drawn + 2:
+        elif feature < self.drawn + self.ends:
             found = ti.abs(self.half[0] + (1.0 - 2.0 * (feature - self.drawn)) * x) < reach
-        elif ti.static(self.open):
-            rim = feature - self.drawn - 2
+        elif ti.static(self.edges > 0):
+            rim = feature - self.drawn - self.ends
             off = self.from_rim(rim, y, z, x)
             if rim < self.edges:
                 along = ti.max(0.0, ti.min(self.rims[rim, LENGTH], self.along(rim, FIRST, off)))
@@ -185,12 +187,18 @@ class PrismWalls:
     @ti.func
     def holds(self, y, z, x):
         """Whether a point lies in the tank or above its mouth."""
-        return self.section.holds(y, z) and ti.abs(x) <= self.half[0]
+        inside = self.section.holds(y, z)
+        if ti.static(self.ends > 0):
+            inside = inside and ti.abs(x) <= self.half[0]
+        return inside
 
     @ti.func
     def follows(self, y, z, x):
         """Whether a point lies in the box in which grains that have left the tank are followed."""
-        return self.section.follows(y, z) and ti.abs(x) <= self.half[1]
+        near = self.section.follows(y, z)
+        if ti.static(self.ends > 0):
+            near = near and ti.abs(x) <= self.half[1]
+        return near
 
 
 def _rims(tank: Tank, half: float) -> tuple[list[np.ndarray], list[np.ndarray]]:

@@ -18,11 +18,18 @@ SLICES = 2000  # of a turned body's depth, for its volume
 class Prism:
     """The outline in the y–z plane, drawn out along x from −`along`/2 to `along`/2 (m), between two end walls.
 
-    Edges of the outline without a wall are open over the whole length. The end walls are as high as the outline.
+    Edges of the outline without a wall are open over the whole length. The end walls are as high as the outline. A
+    `periodic` one has none: it is a slice of a tank without an end, and what leaves it on one side enters on the other.
     """
 
     along: float
+    periodic: bool = False
     axes = SPACE
+
+    @property
+    def period(self) -> float | None:
+        """The length (m) after which space repeats itself along x; None where it does not."""
+        return self.along if self.periodic else None
 
     def half(self, outline: np.ndarray) -> float:
         """How far (m) it reaches along x on either side of the origin."""
@@ -45,6 +52,7 @@ class Turned:
     """
 
     axes = SPACE
+    period = None
 
     def half(self, outline: np.ndarray) -> float:
         """How far (m) it reaches along x on either side of the origin."""
