@@ -1,0 +1,60 @@
+"""Paint spheres in a tank in space over a picture."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lab.paint.space.camera import SpaceCamera
+from lab.paint.space.edges import compose
+from lab.paint.space.faces import find_walls
+from lab.paint.space.layers import Layers
+from lab.paint.space.lines import edge_lines, paint_lines_in_space
+from lab.paint.space.occlusion import find_open_sky
+from lab.paint.space.shade import Paints, shade
+from lab.paint.space.spheres import Spheres, find_spheres
+from lab.paint.space.walls import Walls
+
+SPARSE = 0.02  # of the camera's distance: typical size in an empty tank
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Colours of the walls and of their edges, in 0..255, and half the thickness of edges in pixels."""
+
+    wall: tuple
+    edge: tuple
+    half: float = 1.0
+
+
+def paint_space(
+    picture: np.ndarray,
+    camera: SpaceCamera,
+    place: np.ndarray,
+    radius: np.ndarray,
+    paints: Paints,
+    walls: Walls,
+    skin: Skin,
+    layers: Layers | None = None,
+) -> Layers:
+    """Paint spheres (place (n, 3), radius (n,), m) and walls over a picture (h, w, 3), u8, in place.
+
+    Spheres without a finite place are left out. Returns what is seen where, for what is drawn over it; layers: those
+    of an earlier picture of this size, whose memory is used again.
+    """
+    layers = layers or Layers(*picture.shape[:2])
+    layers.clear(camera)
+    planes = find_walls(layers, camera, walls)
+    spheres = Spheres.seen(camera, place, radius)
+    find_spheres(layers, spheres)
+    typical = float(np.mean(radius)) if len(radius) else SPARSE * camera.gaze.distance
+    balls, paint = _some(spheres.balls), _some(paints.table(spheres.which, camera.gaze.axes))
+    find_open_sky(layers, balls, _some(planes), typical, camera.gaze.distance)
+    shade(layers, balls, _some(planes), paint, skin.wall)
+    compose(picture, layers, balls)
+    paint_lines_in_space(picture, layers, edge_lines(camera, walls, skin.half), skin.edge)
+    return layers
+
+
+def _some(rows: np.ndarray) -> np.ndarray:
+    """Rows for a kernel, which cannot take an array without any."""
+    return rows if len(rows) else np.zeros((1, rows.shape[1]))
