@@ -58,6 +58,11 @@ STYLE = {
     "cargo": "What the grains look like: wheat, iron-ore, coal …",
     "overlay": "What is drawn over the grains: none, trails or forces.",
     "inset": "What is shown larger beside the tank: none, surface or impact.",
+    "azimuth": "In space, how far to the right the camera stands, e.g. '30 deg'.",
+    "elevation": "In space, how steeply it looks down, e.g. '20 deg'.",
+    "orbit": "In space, how often it goes round during the film.",
+    "cut": "In space, leaves out what is in front of this x, e.g. '0 mm'.",
+    "slice": "In space, shows a slice of this thickness, e.g. '20 mm'.",
 }
 
 

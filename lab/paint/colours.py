@@ -15,6 +15,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.paint.cargo.looks import looks
 from lab.paint.cargo.style import CargoColours, aboard_of
+from lab.paint.space.stance import lengths
 from lab.preset.sections.video import OF_AIR, OF_WATER
 from lab.recording.contacts.stress import pressures
 
@@ -115,8 +116,7 @@ def displacement(beds: Sequence[Bed]) -> Colouring:
     starts = {bed: bed.position(0) for bed in beds}
 
     def values(bed: Bed, frame: int) -> np.ndarray:
-        moved = bed.position(frame) - starts[bed]
-        return np.hypot(*moved.T) / bed.diameter
+        return lengths(bed.position(frame) - starts[bed]) / bed.diameter
 
     top = round_up(max(_largest(beds, values), 1.0))
     return Colouring("displacement (diameters)", 0.0, top, ramp(DEEPS), values)

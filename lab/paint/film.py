@@ -1,11 +1,12 @@
 """A film: the picture of any moment of some beds, on a page that is laid out once."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from PIL import Image
 
+from lab.base.errors import LabError
 from lab.paint import decorations as deco
 from lab.paint.colours import bed_colours, colouring
 from lab.paint.curves import TOLERANCE, plots
@@ -18,6 +19,9 @@ from lab.paint.page.theme import THEMES
 from lab.paint.painter import Camera
 from lab.paint.scene.inset import Inset
 from lab.paint.scene.view import SceneView, ViewSetting
+from lab.paint.space.camera import SpaceCamera
+from lab.paint.space.sight import Sight
+from lab.paint.space.view import SpaceView
 from lab.paint.water.layer import WaterLayer
 from lab.preset.sections.ship import axis_motion
 
@@ -56,6 +60,8 @@ class Film:
         moments: Sequence[float] | None = None,
     ) -> None:
         self._look, self._all, self._beds = look, list(beds), list(beds)[:most]
+        if len({bed.footage.space is None for bed in self._beds}) > 1:
+            raise LabError("Scenes in the plane and in space have no common picture: film them apart.")
         self._theme, self._timeline, self._moments = THEMES[look.theme], timeline, moments
         self._title = title or beds[0].footage.title
         self._name_cargo()
@@ -102,7 +108,7 @@ class Film:
         """How many pictures at the end of a timeline show what came of it; 0 without a timeline."""
         return self._timeline.held if self._timeline else 0
 
-    def tank_camera(self, bed: int, frame: int) -> Camera:
+    def tank_camera(self, bed: int, frame: int) -> Camera | SpaceCamera:
         """The camera for points of the tank of a shown bed at the time of a picture."""
         return self._view.tank_camera(bed, frame)
 
@@ -133,15 +139,22 @@ class Film:
         pairs = list(zip(self._beds, times, strict=True))
         if self._timeline:
             self._rows = [np.interp(time, bed.footage.time, np.arange(bed.frames)) for bed, time in pairs]
-            poses = [_between(bed, time, bed.footage.series_pose[:, bed.world]) for bed, time in pairs]
         else:
             self._rows = [_nearest(bed.footage.time, time) for bed, time in pairs]
-            poses = [bed.pose[rows] for bed, rows in zip(self._beds, self._rows, strict=True)]
-        self._pose = np.stack(poses, axis=1)
+        self._pose = self._at(pairs, lambda bed: (bed.pose, bed.footage.series_pose[:, bed.world]))
+        self._stance = self._at(pairs, _stances) if self._beds[0].footage.space else None
         moved = [_motion(bed, self._pose[:, k]) for k, bed in enumerate(self._beds)]
         if self._timeline:  # an axis that stands still between two samples, too
             moved = [_between(bed, time, _motion(bed, bed.footage.series_pose[:, bed.world])) for bed, time in pairs]
         self._moved = np.stack(moved, axis=1)
+
+    def _at(self, pairs: Sequence[tuple], poses: Callable) -> np.ndarray:
+        """Poses (F, K, ...) at the pictures' times; `poses` gives those of a bed in its frames and in its series."""
+        if self._timeline:
+            found = [_between(bed, time, poses(bed)[1]) for bed, time in pairs]
+        else:
+            found = [poses(bed)[0][rows] for (bed, _), rows in zip(pairs, self._rows, strict=True)]
+        return np.stack(found, axis=1)
 
     def _lay_out(self, count: int, grains: object) -> None:
         look, moves = self._look, moving(self._moved)
@@ -155,9 +168,11 @@ class Film:
         )
         self._layout = lay_out(look.width, look.height, needs)
 
-    def _make_view(self) -> SceneView:
+    def _make_view(self) -> SceneView | SpaceView:
         look, layout = self._look, self._layout
         setting = ViewSetting(layout["view"], layout.canvas, layout.unit, self._theme, look.frame, look.overlay)
+        if self._stance is not None:
+            return SpaceView(self._beds, setting, Sight.of(look), np.array(self._rows), self._stance, self.time)
         return SceneView(self._beds, setting, np.array(self._rows), self._pose, self.time)
 
     @property
@@ -244,6 +259,12 @@ class Film:
 def _between(bed: Bed, time: np.ndarray, series: np.ndarray) -> np.ndarray:
     """A series (T, 3) of a bed, which is denser than its frames, at these times (F,)."""
     return np.column_stack([np.interp(time, bed.footage.series_time, column) for column in series.T])
+
+
+def _stances(bed: Bed) -> tuple[np.ndarray, np.ndarray]:
+    """How the tank of a bed in space stands in its frames (F, 6) and in its series (T, 6)."""
+    space = bed.footage.space
+    return space.stance[:, bed.world], space.series_stance[:, bed.world]
 
 
 def _motion(bed: Bed, pose: np.ndarray) -> np.ndarray:

@@ -16,6 +16,8 @@ from lab.paint.scene.bodies import bodies_of, hold_of
 from lab.paint.scene.drive import drive_text
 from lab.paint.scene.moves import moved_line, on_the_way
 from lab.paint.sea import Rail, Sea
+from lab.paint.space.scene import scene_in_space
+from lab.paint.space.stance import flat, lengths
 from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
@@ -39,6 +41,7 @@ class Footage:
     their displacements, m; hold: the room of a floating hull that the grains are in, None if they are in the tank;
     matters: the keys of what the tank holds; water: its particles' volume and gauges, None without water;
     sea: the ship and her waves if the tank is a ship's hold, rail: that of a tank on an axle, else None;
+    space: walls, parts and where all stand of a scene in space, whose vectors are y, z, x; None in the plane;
     ends: the loss of each ship, None if not lost; cargo: which one each grain is; drive: what moves the tank, in words;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
@@ -70,6 +73,8 @@ class Footage:
         self.drive, self.settings = drive_text(recording.preset), recording.preset.video
         self.title = recording.preset.title or recording.name
         self.part_turn = frames["part_turn"][:] if "part_turn" in frames else np.zeros(self.part.shape[:-1])
+        self.space = scene_in_space(recording.preset, self)
+        self.pose, self.series_pose = flat(self.pose), flat(self.series_pose)
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None
         self._read: dict[str, dict[int, np.ndarray]] = {}  # the frames last read of each quantity
 
@@ -201,7 +206,7 @@ class Bed:
         return shapes.kind[shapes.which[self.world]] if shapes else np.zeros(len(self.radius), dtype=int)
 
     def position(self, frame: int) -> np.ndarray:
-        """Grain positions (n, 2) in the tank frame, m; NaN for a grain that has left the scene."""
+        """Grain positions (n, 2), in space (n, 3), in the tank frame, m; NaN for a grain that has left the scene."""
         return self.aboard(self.footage.grains("position", frame, self.world), frame)
 
     def aboard(self, points: np.ndarray, frame: float) -> np.ndarray:
@@ -216,7 +221,7 @@ class Bed:
 
     def speed(self, frame: int) -> np.ndarray:
         """Grain speeds (n,) relative to the tank, or to the hull in which they are, m/s."""
-        return np.hypot(*self.footage.grains("velocity", frame, self.world).T)
+        return lengths(self.footage.grains("velocity", frame, self.world))
 
     def angle(self, frame: int) -> np.ndarray:
         """Grain angles (n,) in the tank frame, rad."""
@@ -232,8 +237,9 @@ class Bed:
         return replace(found, place=self.aboard(found.place, row), force=force)
 
     def spin(self, frame: int) -> np.ndarray:
-        """Grain spins (n,) relative to the tank, rad/s."""
-        return self.footage.grains("spin", frame, self.world)
+        """Grain spins (n,) relative to the tank, in space their sizes, rad/s."""
+        spin = self.footage.grains("spin", frame, self.world)
+        return spin if spin.ndim == 1 else lengths(spin)
 
     def drops(self, name: str, frame: int) -> np.ndarray:
         """The values (n,) or (n, 2) of a quantity for each particle of water."""

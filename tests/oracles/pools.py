@@ -50,6 +50,7 @@ class MadeFootage:
     open_edges: tuple[int, ...] = ()
     settings: Video = field(default_factory=Video)
     title: str = "Water in a tank"
+    space: None = None
 
     def __post_init__(self) -> None:
         gauges = {f"P{k}": gauge for k, gauge in enumerate(self.gauges, start=1)}

@@ -7,6 +7,7 @@ import numpy as np
 from lab.paint.curves import monotonic
 from lab.paint.decorations import number
 from lab.paint.footage import Bed
+from lab.paint.space.stance import lengths
 from solvers.machine.quantity import ROLL
 
 SMOOTH = 0.1  # s over which the rate of the shift is smoothed
@@ -56,10 +57,10 @@ def _avalanche(bed: Bed) -> Event | None:
     centre = footage.centre_of_mass[:, bed.world]
     step = float(np.median(np.diff(time)))
     width = max(1, round(SMOOTH / step))
-    rate = np.hypot(*np.gradient(centre, time, axis=0).T)
+    rate = lengths(np.gradient(centre, time, axis=0))
     rate = np.convolve(np.nan_to_num(rate), np.full(width, 1.0 / width), "same")
     row = int(np.argmax(rate))
-    way = float(np.nansum(np.hypot(*np.diff(centre, axis=0).T)))
+    way = float(np.nansum(lengths(np.diff(centre, axis=0))))
     if way < LEAST * bed.diameter or rate[row] < STRONG * rate.mean():
         return None
     return Event(float(time[row]), f"Avalanche at {number(abs(np.degrees(tilt[row])), 1)}°, {number(time[row], 2)} s")
@@ -84,7 +85,7 @@ def telling_moments(bed: Bed, count: int) -> np.ndarray:
     for name in ("centre_of_mass", "water_centre"):
         found = footage.centre_of_mass if name == "centre_of_mass" else footage.water and footage.measured(name)
         if found is not None:
-            steps = np.nan_to_num(np.hypot(*np.diff(found[:, bed.world], axis=0).T))
+            steps = np.nan_to_num(lengths(np.diff(found[:, bed.world], axis=0)))
             way[1:] += LIVELY * np.cumsum(steps) / max(steps.sum(), 1e-30)
     even = (time - first) / max(last - first, 1e-30)
     course = np.maximum.accumulate(even + way)

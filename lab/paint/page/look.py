@@ -8,7 +8,8 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.paint.footage import Bed, Footage
 from lab.preset.fields import taken_of
-from lab.preset.sections.video import Video, colours_of
+from lab.preset.reader import read
+from lab.preset.sections.video import OF_SPACE, Video, check_sight, colours_of
 from lab.preset.units import quoted
 
 WORDS = {name: taken_of(Video)[name].words for name in ("frame", "theme", "overlay", "inset", "cargo")}
@@ -20,7 +21,10 @@ MOVES = 1e-6  # m, rad: a tank that moves by less stands still
 
 @dataclass(frozen=True)
 class Look:
-    """The user's choices: size in pixels, colour, frame and others by name, playback speed (1: real time)."""
+    """The user's choices: size in pixels, colour, frame and others by name, playback speed (1: real time).
+
+    Of scenes in space, None by default: azimuth, elevation (rad), turns in an orbit, cut and slice (m).
+    """
 
     width: int
     height: int
@@ -31,21 +35,28 @@ class Look:
     theme: str = "light"
     overlay: str = "none"
     inset: str | None = None
+    azimuth: float | None = None
+    elevation: float | None = None
+    orbit: float | None = None
+    cut: float | None = None
+    slice: float | None = None
 
 
 def choose_look(footage: Footage, **options: object) -> Look:
     """The look from the `options` that are not None, else the preset's [video]; raises LabError."""
-    wanted = {key: value for key, value in options.items() if value is not None}
+    wanted = {key: _in_si(key, value) for key, value in options.items() if value is not None}
     chosen = {**asdict(footage.settings), **wanted}
     look = Look(**{field.name: chosen[field.name] for field in fields(Look)})
     words = colours_of(footage.matters)
     look = look if look.colour else replace(look, colour=words[0])
     if look.frame is None:
-        moves = np.ptp(footage.pose, axis=0).max() > MOVES
+        poses = footage.space.stance if footage.space else footage.pose
+        moves = np.ptp(poses, axis=0).max() > MOVES
         look = replace(look, frame="earth" if moves else "tank")
     if look.inset is None:
         look = replace(look, inset="surface" if _is_flume(footage) else "none")
     _check_size(look)
+    check_sight(look, footage.space is not None)
     if look.colour not in words:
         raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(words)}.")
     for name, known in WORDS.items():
@@ -57,10 +68,16 @@ def choose_look(footage: Footage, **options: object) -> Look:
     return look
 
 
+def _in_si(name: str, value: object) -> object:
+    """What a user asks for; of a scene in space a quantity such as "30 deg", by the key's own unit and range."""
+    asked = name in OF_SPACE and isinstance(value, str)
+    return getattr(read(Video, {name: value}, "video"), name) if asked else value
+
+
 def _is_flume(footage: Footage) -> bool:
     """Whether a recording is of one long low tank ashore with water."""
     wide, high = np.ptp(footage.outline, axis=0)
-    return bool(footage.water and not footage.sea and footage.worlds == 1 and wide > LONG * high)
+    return bool(footage.water and not footage.space and not footage.sea and footage.worlds == 1 and wide > LONG * high)
 
 
 def _check_size(look: Look) -> None:

@@ -25,7 +25,11 @@ def paint_arrow(
     corner = outline[np.argmax(outline @ [1.0, 2.0])]
     out = corner - outline.mean(axis=0)
     start = corner + AWAY * unit / camera.scale * np.sign(out)
-    way = _carried(camera, start, np.linspace(0.0, 1.0, STEPS + 1)[:, None] * pose)
+    paint_way(picture, _carried(camera, start, np.linspace(0.0, 1.0, STEPS + 1)[:, None] * pose), unit, colour)
+
+
+def paint_way(picture: np.ndarray, way: np.ndarray, unit: float, colour: tuple) -> None:
+    """Paint a way (STEPS + 1, 2) in pixels as an arrow; nothing if it is too short for one."""
     pieces = np.hypot(*np.diff(way, axis=0).T)
     if pieces.sum() < LEAST * unit:
         return

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image
 
 from lab.paint import decorations as deco
 from lab.paint.colours import Colouring, spread
@@ -16,6 +16,7 @@ from lab.paint.scene.backdrop import paint_sky
 from lab.paint.scene.bodies import paint_parts
 from lab.paint.scene.cells import Cells, Room, lay_cells
 from lab.paint.scene.drive import paint_arrow
+from lab.paint.scene.ends import BAND, draw_ends
 from lab.paint.scene.floating_ship import FloatingShip
 from lab.paint.scene.openings import name_openings
 from lab.paint.scene.overlay import Overlay
@@ -29,7 +30,7 @@ ROOM = 0.3  # largest margin around an open tank relative to its larger side; sm
 ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
 AIR = 0.6  # u, between a name and what is to its right
 STILL = 1e-9  # m, rad: poses that differ by less are told once, for all beds
-NAME, BAND = 1.8, 2.6  # u, for the name of a bed, and for the loss of a ship among several
+NAME = 1.8  # u, for the name of a bed
 FOLLOW = 0.35  # of her breadth and height: a ship that goes farther sideways or up is followed by the camera
 HOUSE = 1.0, 0.8  # of the superstructure's height that has room in the view, of one ship alone and of several
 
@@ -146,16 +147,7 @@ class SceneView:
 
     def draw_ends(self, image: Image.Image, frame: int) -> None:
         """Draw a band with the text on the loss of each ship lost so far, at the foot of her cell."""
-        draw = ImageDraw.Draw(image)
-        for bed, (left, _, right, bottom) in zip(self.beds, self._cells.boxes, strict=True):
-            end = bed.footage.ends[bed.world]
-            if end and end.time <= self._time[frame] + 1e-9:
-                height = min(BAND * self._unit, 0.25 * (right - left))
-                size = min(1.45 * self._unit, 0.6 * height)
-                said = f"She {end.words}"
-                if not deco.fits(said, right - left - size, size, bold=True):
-                    said = said.partition(",")[0]
-                deco.draw_band(draw, (left, bottom - height, right, bottom), said, size, self._theme)
+        draw_ends(image, self.beds, self._cells.boxes, self._time[frame], self._unit, self._theme)
 
     def _paint_around(self, picture: np.ndarray, k: int, frame: int) -> None:
         """Sea and hull, or the tank."""

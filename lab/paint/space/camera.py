@@ -12,17 +12,21 @@ import numpy as np
 
 from lab.paint.painter import Camera
 
-AWAY = 4.0  # distance of the camera over the radius of the sphere around what it shows: a field of view of 29°
+AWAY = 5.0  # distance of the camera over the radius of the sphere around what it shows: a field of view of 23°
 
 
 @dataclass(frozen=True)
 class Gaze:
-    """From where a camera looks where: at target (3,) m, from a distance (m), azimuth and elevation (rad)."""
+    """From where a camera looks where: at target (3,) m, from a distance (m), azimuth and elevation (rad).
+
+    turned (3, 3): of the axes in which points are given, in those in which azimuth and elevation are; None: the same.
+    """
 
     target: np.ndarray
     distance: float
     azimuth: float = 0.0
     elevation: float = 0.0
+    turned: np.ndarray | None = None
 
     @cached_property
     def axes(self) -> np.ndarray:
@@ -30,7 +34,8 @@ class Gaze:
         round_, tilt = self.azimuth, self.elevation
         out = np.array([np.cos(tilt) * np.sin(round_), np.sin(tilt), np.cos(tilt) * np.cos(round_)])
         right = np.array([np.cos(round_), 0.0, -np.sin(round_)])
-        return np.array([right, np.cross(out, right), -out])
+        rows = np.array([right, np.cross(out, right), -out])
+        return rows if self.turned is None else rows @ self.turned
 
     @property
     def eye(self) -> np.ndarray:
@@ -70,17 +75,21 @@ class SpaceCamera:
         """This camera for a part of the picture whose first pixel is in this column and row."""
         return replace(self, screen=self.screen.shifted(left, top))
 
+    def carried(self, place: np.ndarray, turned: np.ndarray) -> "SpaceCamera":
+        """This earth camera for points of a tank at a place (3,) m, turned by a matrix (3, 3)."""
+        return replace(self, gaze=replace(self.gaze, target=turned.T @ (self.gaze.target - place), turned=turned))
+
     def from_azimuth(self, azimuth: float) -> "SpaceCamera":
         """This camera, gone around its target to another azimuth (rad)."""
         return replace(self, gaze=replace(self.gaze, azimuth=azimuth))
 
 
-def gaze_at(points: np.ndarray, azimuth: float, elevation: float) -> Gaze:
-    """A gaze at the middle of points (n, 3), m, from far enough for a mild perspective."""
+def gaze_at(points: np.ndarray, azimuth: float, elevation: float, distance: float | None = None) -> Gaze:
+    """A gaze at the middle of points (n, 3), m, from this distance (m), or far enough for a mild perspective."""
     low, high = np.min(points, axis=0), np.max(points, axis=0)
     middle = 0.5 * (low + high)
     around = float(np.linalg.norm(np.asarray(points) - middle, axis=1).max())
-    return Gaze(middle, AWAY * around, azimuth, elevation)
+    return Gaze(middle, distance or AWAY * around, azimuth, elevation)
 
 
 def ground(gaze: Gaze, points: np.ndarray, azimuths: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.paint.space.camera import SpaceCamera
-from lab.paint.space.edges import compose
-from lab.paint.space.faces import find_walls
-from lab.paint.space.layers import Layers
-from lab.paint.space.lines import edge_lines, paint_lines_in_space
-from lab.paint.space.occlusion import find_open_sky
-from lab.paint.space.shade import Paints, shade
-from lab.paint.space.spheres import Spheres, find_spheres
+from lab.paint.space.raster.edges import compose
+from lab.paint.space.raster.faces import find_walls
+from lab.paint.space.raster.layers import Layers
+from lab.paint.space.raster.lines import edge_lines, paint_lines_in_space
+from lab.paint.space.raster.occlusion import find_open_sky
+from lab.paint.space.raster.shade import Paints, shade
+from lab.paint.space.raster.spheres import Spheres, find_spheres
 from lab.paint.space.walls import Walls
 
 SPARSE = 0.02  # of the camera's distance: typical size in an empty tank
@@ -19,9 +19,9 @@ SPARSE = 0.02  # of the camera's distance: typical size in an empty tank
 
 @dataclass(frozen=True)
 class Skin:
-    """Colours of the walls and of their edges, in 0..255, and half the thickness of edges in pixels."""
+    """Colours of the walls, (3,) or (m, 3) of each, and of edges, in 0..255; half the thickness of edges in pixels."""
 
-    wall: tuple
+    wall: np.ndarray | tuple
     edge: tuple
     half: float = 1.0
 
@@ -49,7 +49,8 @@ def paint_space(
     typical = float(np.mean(radius)) if len(radius) else SPARSE * camera.gaze.distance
     balls, paint = _some(spheres.balls), _some(paints.table(spheres.which, camera.gaze.axes))
     find_open_sky(layers, balls, _some(planes), typical, camera.gaze.distance)
-    shade(layers, balls, _some(planes), paint, skin.wall)
+    tints = np.broadcast_to(np.asarray(skin.wall, dtype=float), (max(len(planes), 1), 3))
+    shade(layers, balls, _some(planes), paint, np.ascontiguousarray(tints))
     compose(picture, layers, balls)
     paint_lines_in_space(picture, layers, edge_lines(camera, walls, skin.half), skin.edge)
     return layers

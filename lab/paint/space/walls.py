@@ -89,6 +89,13 @@ class Walls:
         return (((eye - self.points[self.first[:-1]]) * self.normals).sum(axis=1) > 0.0) | self.both
 
 
+def drawn_out(line: np.ndarray, along: float) -> Walls:
+    """A plate with a cross-section (m, 2) y, z in m, as long in x as `along` (m), seen from both sides."""
+    ends = [np.column_stack([line, np.full(len(line), end)]) for end in (0.5 * along, -0.5 * along)]
+    pieces = [np.array([ends[1][k + 1], ends[1][k], ends[0][k], ends[0][k + 1]]) for k in range(len(line) - 1)]
+    return Walls.of(pieces, both=True)
+
+
 def prism(outline: np.ndarray, along: float, open_edges: Sequence[int] = ()) -> Walls:
     """The walls of a tank with a cross-section (m, 2) y, z in m and a length (m) in x, its middle at x = 0.
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from math import pi
 from typing import Annotated, Literal
 
 from lab.base.errors import LabError
@@ -27,6 +28,8 @@ CARGOES = (  # whose looks are in `lab.paint.cargo`
 )
 COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR)
 OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR}
+
+OF_SPACE = "azimuth", "elevation", "orbit", "cut", "slice"  # keys of scenes in space
 
 Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
@@ -77,6 +80,26 @@ class Video:
         ),
     ] = None
     speed: Annotated[float, Interval(gt=0), Doc("Playback speed; 1 is as in nature.")] = 1.0
+    azimuth: Annotated[
+        Annotated[float, Unit("rad"), Interval(ge=-2.0 * pi, le=2.0 * pi)] | None,
+        Doc("In space, how far to the right of the plane's view the camera stands; 25 deg without it."),
+    ] = None
+    elevation: Annotated[
+        Annotated[float, Unit("rad"), Interval(ge=-0.5 * pi, le=0.5 * pi)] | None,
+        Doc("In space, how steeply the camera looks down; 20 deg without it."),
+    ] = None
+    orbit: Annotated[
+        Annotated[float, Interval(ge=-100, le=100)] | None,
+        Doc("In space, how often the camera goes round the tank during the film, to the right."),
+    ] = None
+    cut: Annotated[
+        Annotated[float, Unit("m")] | None,
+        Doc("In space, grains whose x is larger, nearer to the viewer, are left out; with slice, its middle."),
+    ] = None
+    slice: Annotated[
+        Annotated[float, Unit("m"), Interval(gt=0)] | None,
+        Doc("In space, only grains in a slice across x of this thickness are shown."),
+    ] = None
 
 
 def colours_of(matters: Collection[str]) -> tuple[str, ...]:
@@ -84,8 +107,22 @@ def colours_of(matters: Collection[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS.get(matter, ())))
 
 
-def check_video(video: Video, matters: Collection[str]) -> None:
-    """Raise LabError for a colour of what is not there, and for picture sizes that the video codec cannot encode."""
+def check_sight(chosen: Video, in_space: bool) -> None:
+    """Raise LabError for wishes that pictures of a scene in space, or in the plane, cannot fulfil; also of a `Look`."""
+    for name in OF_SPACE:
+        if getattr(chosen, name) is not None and not in_space:
+            raise LabError(f"video.{name}: goes with a scene in space; leave this out in the plane.")
+    if in_space and chosen.overlay == "forces":
+        raise LabError("video.overlay: forces are drawn in the plane only; set trails or none.")
+    if in_space and chosen.inset not in (None, "none"):
+        raise LabError("video.inset: pictures in space have none; leave this out.")
+    if in_space and chosen.colour == "pressure":
+        raise LabError("video.colour: the pressure in grains is known in the plane only; set another, such as speed.")
+
+
+def check_video(video: Video, matters: Collection[str], in_space: bool = False) -> None:
+    """Raise LabError for what cannot be shown, and for picture sizes that the video codec cannot encode."""
+    check_sight(video, in_space)
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour and not set(fitting) & set(matters):
         said = f"{' or '.join(fitting)}, and there {'are' if 'grains' in fitting else 'is'} none"

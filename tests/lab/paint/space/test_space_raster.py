@@ -5,12 +5,12 @@ import pytest
 
 from lab.paint.painter import Camera
 from lab.paint.space.camera import Gaze, SpaceCamera, framing, gaze_at, orbit
-from lab.paint.space.faces import find_walls
-from lab.paint.space.layers import FAR, NOTHING, WALL, Layers
 from lab.paint.space.painter import Skin, paint_space
-from lab.paint.space.sections import across
-from lab.paint.space.shade import Paints
-from lab.paint.space.spheres import Spheres, find_spheres
+from lab.paint.space.raster.faces import find_walls
+from lab.paint.space.raster.layers import FAR, NOTHING, WALL, Layers
+from lab.paint.space.raster.shade import Paints
+from lab.paint.space.raster.spheres import Spheres, find_spheres
+from lab.paint.space.sight import across
 from lab.paint.space.walls import Walls, prism
 from solvers.machine.runtime import initialise
 

@@ -12,7 +12,7 @@ import taichi as ti
 
 from lab.paint.raster.base import BAND, PER_TASK, Index, Shares, Table, sort_into_bands, whole
 from lab.paint.space.camera import SpaceCamera
-from lab.paint.space.layers import Layers, Numbers, Whole
+from lab.paint.space.raster.layers import Layers, Numbers, Whole
 
 SMALLEST = 0.7  # pixels: smaller spheres are drawn with this radius, else they would be missed between pixels
 

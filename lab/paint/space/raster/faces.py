@@ -5,7 +5,7 @@ import taichi as ti
 
 from lab.paint.raster.base import BAND, PER_TASK, Index, Shares, Table, sort_into_bands, whole
 from lab.paint.space.camera import SpaceCamera
-from lab.paint.space.layers import WALL, Layers, Numbers, Whole, ray_at, read_lens
+from lab.paint.space.raster.layers import WALL, Layers, Numbers, Whole, ray_at, read_lens
 from lab.paint.space.walls import Walls
 
 

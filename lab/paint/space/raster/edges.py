@@ -8,7 +8,7 @@ import numpy as np
 import taichi as ti
 
 from lab.paint.raster.base import PER_TASK, Picture, Shares, Table, colour_of, put
-from lab.paint.space.layers import NOTHING, Layers, Numbers, Whole, ray_at, read_lens
+from lab.paint.space.raster.layers import NOTHING, Layers, Numbers, Whole, ray_at, read_lens
 
 AROUND = ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1))  # the pixel itself and those beside it: row, column
 

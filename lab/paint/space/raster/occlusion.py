@@ -12,7 +12,7 @@ import numpy as np
 import taichi as ti
 
 from lab.paint.raster.base import PER_TASK, Shares, Table
-from lab.paint.space.layers import NOTHING, WALL, Layers, Numbers, Whole, ray_at, read_lens
+from lab.paint.space.raster.layers import NOTHING, WALL, Layers, Numbers, Whole, ray_at, read_lens
 
 TAPS, TILE = 12, 4  # points a pixel; side of a tile in pixels
 WINDINGS = 5  # of the spiral

@@ -5,7 +5,7 @@ import taichi as ti
 
 from lab.paint.raster.base import Picture, Shares, Table, colour_of, mix, row_of, rows_of, whole
 from lab.paint.space.camera import SpaceCamera
-from lab.paint.space.layers import Layers, Numbers
+from lab.paint.space.raster.layers import Layers, Numbers
 from lab.paint.space.walls import Walls
 
 SHARP = np.cos(np.radians(30.0))  # faces that meet at a smaller angle are parts of one round surface, without an edge

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from lab.paint.raster.base import PER_TASK, Picture, Shares, Table, put
-from lab.paint.space.layers import NOTHING, WALL, Layers, Numbers, Whole, ray_at, read_lens
-from lab.paint.space.occlusion import evened, normal_at
+from lab.paint.raster.base import PER_TASK, Picture, Shares, Table, put, row_of
+from lab.paint.space.raster.layers import NOTHING, WALL, Layers, Numbers, Whole, ray_at, read_lens
+from lab.paint.space.raster.occlusion import evened, normal_at
 
 KEY = (-0.46, 0.70, -0.55)  # direction to the light: right, up, depth
 SKY, GROUND, SUN = 0.68, 0.48, 0.56  # brightness from above, from below, and of the key light
@@ -43,10 +43,13 @@ class Paints:
         return found
 
 
-def shade(layers: Layers, balls: np.ndarray, planes: np.ndarray, paints: np.ndarray, wall: tuple) -> None:
-    """Write into the layers the colours of what is seen; paints (n, 10): of the spheres; wall: of walls, 0..255."""
-    colours = np.array([*wall, *KEY / np.linalg.norm(KEY)], dtype=float)
-    _shade(layers.shaded, layers.depth, layers.who, layers.sky, balls, planes, paints, colours, layers.lens)
+def shade(layers: Layers, balls: np.ndarray, planes: np.ndarray, paints: np.ndarray, tints: np.ndarray) -> None:
+    """Write into the layers the colours of what is seen.
+
+    paints (n, 10): of the spheres, by `Paints.table`; tints (m, 3): colours of the walls, 0..255.
+    """
+    key = np.array(KEY) / np.linalg.norm(KEY)
+    _shade(layers.shaded, layers.depth, layers.who, layers.sky, balls, planes, paints, tints, key, layers.lens)
 
 
 @ti.func
@@ -88,13 +91,14 @@ def _shade(
     balls: Table,
     planes: Table,
     paints: Table,
-    colours: Numbers,
+    tints: Table,
+    light: Numbers,
     numbers: Numbers,
 ):
     for k in range(depth.shape[0] * PER_TASK):
         if k % PER_TASK == 0:
             row, lens = k // PER_TASK, read_lens(numbers)
-            key = ti.Vector([colours[3], colours[4], colours[5]])
+            key = ti.Vector([light[0], light[1], light[2]])
             for column in range(depth.shape[1]):
                 number = who[row, column]
                 if number != NOTHING:
@@ -103,9 +107,10 @@ def _shade(
                     seen = evened(open_sky, who, row, column)
                     bright = GROUND + (SKY - GROUND) * (0.5 + 0.5 * normal[1])
                     lit = SUN * ti.max(normal.dot(key), 0.0)
-                    paint = ti.Vector([colours[0], colours[1], colours[2]])
+                    paint = ti.Vector([0.0, 0.0, 0.0])
                     if number >= 0:
                         paint = _of_sphere(number, point, normal, bright, lit, seen, paints, key)
                     elif number <= WALL:
-                        paint *= seen * (1.0 - WALL_SUN + WALL_SUN * (0.5 + 0.5 * normal.dot(key)))
+                        paint = row_of(tints, WALL - number) * seen
+                        paint *= 1.0 - WALL_SUN + WALL_SUN * (0.5 + 0.5 * normal.dot(key))
                     put(found, row, column, paint)

@@ -1,8 +1,10 @@
-"""What of the cargo is shown: all of it, what is behind a plane, or a slice."""
+"""From where a scene in space is seen, and what of its cargo: all of it, what is behind a plane, or a slice."""
 
 from dataclasses import dataclass
 
 import numpy as np
+
+AZIMUTH, ELEVATION = np.radians(25.0), np.radians(20.0)  # where the camera stands unless it is told
 
 
 @dataclass(frozen=True)
@@ -30,3 +32,25 @@ class Section:
 def across(x: float, thick: float | None = None) -> Section:
     """A cut across the tank at this x (m), which leaves out what is nearer to the viewer, or a slice about it."""
     return Section(np.array([0.0, 0.0, x]), np.array([0.0, 0.0, 1.0]), thick)
+
+
+@dataclass(frozen=True)
+class Sight:
+    """Where the camera stands, azimuth and elevation (rad), how often it goes round in a film, and what it shows."""
+
+    azimuth: float = AZIMUTH
+    elevation: float = ELEVATION
+    turns: float = 0.0
+    section: Section | None = None
+
+    @classmethod
+    def of(cls, look) -> "Sight":
+        """The sight that a look (`lab.paint.page.look.Look`) asks for."""
+        section = None
+        if look.cut is not None or look.slice is not None:
+            section = across(look.cut or 0.0, look.slice)
+        azimuth, elevation = (
+            default if wish is None else wish
+            for wish, default in ((look.azimuth, AZIMUTH), (look.elevation, ELEVATION))
+        )
+        return cls(azimuth, elevation, look.orbit or 0.0, section)

@@ -1,0 +1,72 @@
+"""What a recording of a scene in space has besides places: walls, moving plates, and where all of them stand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lab.paint.space.stance import stances
+from lab.paint.space.walls import Walls, drawn_out, prism
+
+if TYPE_CHECKING:
+    from lab.preset.schema import Preset
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceScene:
+    """The tank of a footage in space, m and rad.
+
+    walls: of the tank at rest; plates: the moving parts at rest, in the order of the parts; stance (F, W, 6): of the
+    tank in the frames, series_stance (T, W, 6): in the series; part_stance (F, W, P, 6): of the parts in the tank.
+    """
+
+    walls: Walls
+    plates: tuple[Walls, ...]
+    stance: np.ndarray
+    series_stance: np.ndarray
+    part_stance: np.ndarray
+
+    @classmethod
+    def of_prism(
+        cls,
+        outline: np.ndarray,
+        along: float,
+        open_edges: Sequence[int],
+        parts: Mapping[str, np.ndarray],
+        poses: tuple[np.ndarray, np.ndarray],
+        moves: tuple[np.ndarray, np.ndarray],
+    ) -> SpaceScene:
+        """A tank with a cross-section (m, 2) y, z that is as long in x as `along` (m), and parts (k, 2) as long.
+
+        poses: of frames (F, W, 3 or 6) and of the series; moves: displacements (F, W, P, 2 or 3) and turns (F, W, P) or
+        (F, W, P, 3) of the parts.
+        """
+        plates = tuple(drawn_out(line, along) for line in parts.values())
+        shift, turn = moves
+        part = np.zeros((*shift.shape[:-1], 6))
+        part[..., : shift.shape[-1]] = shift
+        if turn.ndim == shift.ndim:
+            part[..., 3:] = turn
+        else:
+            part[..., 5] = turn
+        walls = prism(outline, along, open_edges)
+        return cls(walls, plates, *(stances(pose) for pose in poses), part)
+
+    def part_at(self, number: int, world: int, row: float) -> np.ndarray:
+        """The stance (6,) of a part in the tank, in a frame or between two."""
+        first = int(row)
+        after, share = min(first + 1, len(self.part_stance) - 1), row - first
+        one, two = self.part_stance[[first, after], world, number]
+        return one + share * (two - one)
+
+
+def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
+    """The scene of a footage (`lab.paint.footage.Footage`) whose preset is of a tank in space; None in the plane."""
+    along = getattr(preset.tank, "along", None)
+    if along is None:
+        return None
+    poses, moves = (footage.pose, footage.series_pose), (footage.part, footage.part_turn)
+    return SpaceScene.of_prism(footage.outline, along, footage.open_edges, footage.parts, poses, moves)

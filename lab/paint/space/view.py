@@ -1,0 +1,214 @@
+"""The view of scenes in space: tanks side by side in one scale, seen from one direction, with what is in them."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from PIL import Image
+
+from lab.paint.colours import Colouring, spread
+from lab.paint.footage import Bed
+from lab.paint.scene.cells import Room, lay_cells
+from lab.paint.scene.drive import AWAY, STEPS, paint_way
+from lab.paint.scene.ends import BAND, draw_ends
+from lab.paint.scene.overlay import TRAILS, Overlay
+from lab.paint.scene.trails import LEAST, THICK
+from lab.paint.scene.view import ARROW, NAME, ROOM, STILL, WALL, ViewSetting
+from lab.paint.space.camera import SpaceCamera, gaze_at, ground, orbit
+from lab.paint.space.painter import Skin, paint_space
+from lab.paint.space.raster.layers import Layers
+from lab.paint.space.raster.lines import edge_lines, lines_between, paint_lines_in_space
+from lab.paint.space.raster.shade import Paints
+from lab.paint.space.sight import Sight
+from lab.paint.space.stance import carried, lengths, rotation, turned_axes
+from lab.paint.space.walls import Walls
+
+EDGE = 0.065  # half thickness of edges in u
+GLOSS = 0.12  # of grains in the colours of a scale
+SEED = 7  # of the axes at whose ends grains have their marks
+
+
+class SpaceView:
+    """Beds in space in one scale, as `SceneView` has those in a plane.
+
+    rows (K, F): of their frames, maybe between two; stance (F, K, 6): of the tanks at the pictures' times.
+    """
+
+    def __init__(
+        self,
+        beds: Sequence[Bed],
+        setting: ViewSetting,
+        sight: Sight,
+        rows: np.ndarray,
+        stance: np.ndarray,
+        time: np.ndarray,
+    ) -> None:
+        self.beds, self.setting, self._sight, self._theme = list(beds), setting, sight, setting.theme
+        self._rows, self._time = rows, time
+        self._stance = stance if setting.frame == "earth" else np.zeros_like(stance)
+        self._azimuth = orbit(sight.azimuth, sight.turns, time)
+        self._moves = bool(np.abs(self._stance).max(initial=0.0) > STILL)
+        self.overlay = Overlay("none", self.beds, rows, setting.theme)
+        self._reach = [_reach(bed) for bed in beds]
+        self._cameras = self._place_beds()
+        self._layers: dict[tuple, Layers] = {}  # by the size of the part of the picture
+
+    def _place_beds(self) -> list[SpaceCamera]:
+        """The camera of each bed for the points of the earth, from the first azimuth; and the cells."""
+        unit, count = self.setting.unit, len(self.beds)
+        shown = [self._framed(k) for k in range(count)]
+        gazes = [gaze_at(points, self._sight.azimuth, self._sight.elevation) for points in shown]
+        away = max(gaze.distance for gaze in gazes)
+        gazes = [gaze_at(points, gaze.azimuth, gaze.elevation, away) for points, gaze in zip(shown, gazes, strict=True)]
+        azimuths = np.unique(self._azimuth)
+        grounds = [ground(gaze, points, azimuths) for gaze, points in zip(gazes, shown, strict=True)]
+        around = (WALL + ARROW * self._moves / np.sqrt(count)) * unit
+        lost = count > 1 and any(bed.footage.ends[bed.world] for bed in self.beds)
+        named = any(bed.name for bed in self.beds)
+        self._cells = lay_cells(grounds, self.setting.box, unit, Room(around, NAME * unit * named, BAND * unit * lost))
+        self.cameras, self.names_at, self.name_width = self._cells.cameras, self._cells.names, self._cells.width
+        return [SpaceCamera(gaze, screen) for gaze, screen in zip(gazes, self.cameras, strict=True)]
+
+    def _framed(self, k: int) -> np.ndarray:
+        """The points (n, 3) m that the camera is to show of bed k: at rest, and wherever its tank goes."""
+        points, stance = self._reach[k], np.unique(self._stance[:, k], axis=0)
+        return np.concatenate([points, *(carried(points, one) for one in stance)])
+
+    def style(self, grains: Colouring | None, water: object, hues: Sequence[tuple]) -> None:
+        """Say what the colours show."""
+        self._colouring = grains
+
+    def paint_backdrop(self, page: np.ndarray) -> None:
+        """What does not move: nothing, since the camera may go round."""
+
+    def write_names(self, image: Image.Image, frame: int) -> None:
+        """No names stand in the view."""
+
+    def draw_ends(self, image: Image.Image, frame: int) -> None:
+        """Draw a band with the text on the loss of each ship lost so far, at the foot of her cell."""
+        draw_ends(image, self.beds, self._cells.boxes, self._time[frame], self.setting.unit, self._theme)
+
+    def earth_camera(self, k: int, frame: int) -> SpaceCamera:
+        """The camera of bed k for the points of the earth."""
+        return self._cameras[k].from_azimuth(float(self._azimuth[frame]))
+
+    def tank_camera(self, k: int, frame: int) -> SpaceCamera:
+        """The camera for points (n, 3) of the tank of bed k."""
+        stance = self._stance[frame, k]
+        return self.earth_camera(k, frame).carried(stance[:3], rotation(stance[3:]))
+
+    def paint(self, picture: np.ndarray, frame: int) -> None:
+        """Paint the beds at the time of a picture, in place."""
+        for k in range(len(self.beds)):
+            left, top, right, bottom = self._cells.boxes[k] if len(self.beds) > 1 else self.setting.canvas
+            part = np.ascontiguousarray(picture[top:bottom, left:right])
+            if part.size:
+                self._paint_bed(part, (left, top), k, frame)
+                picture[top:bottom, left:right] = part
+
+    def _paint_bed(self, part: np.ndarray, corner: tuple[int, int], k: int, frame: int) -> None:
+        bed, row, theme, half = self.beds[k], self._rows[k][frame], self._theme, EDGE * self.setting.unit
+        space, camera = bed.footage.space, self.tank_camera(k, frame).shifted(*corner)
+        layers = self._layers.get(part.shape) or Layers(*part.shape[:2])
+        self._layers[part.shape] = layers
+        if self._moves:
+            self._paint_ghost(part, layers, self.earth_camera(k, frame).shifted(*corner), space.walls, half)
+        place, radius, paints = self._cargo(bed, row)
+        plates = [_moved(plate, space.part_at(number, bed.world, row)) for number, plate in enumerate(space.plates)]
+        walls = Walls.joined([space.walls, *plates]) if plates else space.walls
+        parts = np.arange(len(walls.both)) >= len(space.walls.both)
+        skin = Skin(np.where(parts[:, None], theme.part, theme.hold), theme.wall, half)
+        paint_space(part, camera, place, radius, paints, walls, skin, layers)
+        if self.setting.overlay == "trails":
+            self._paint_trails(part, layers, camera, k, frame)
+        if self._moves:
+            self._paint_arrow(part, self.earth_camera(k, frame).shifted(*corner), k, frame)
+
+    def _paint_ghost(self, part: np.ndarray, layers: Layers, camera: SpaceCamera, walls: Walls, half: float) -> None:
+        """The edges of the tank at rest, behind all else."""
+        layers.clear(camera)
+        paint_lines_in_space(part, layers, edge_lines(camera, walls, half), self._theme.ghost)
+
+    def _cargo(self, bed: Bed, row: float) -> tuple[np.ndarray, np.ndarray, Paints]:
+        """Places, radii and looks of the grains that are shown, and of those that line the tank."""
+        fixed = bed.footage.fixed
+        if bed.empty:
+            place, radius, colour, gloss = np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros(0)
+            axes = mark = None
+        else:
+            place, radius = self._in_sight(bed, row), bed.radius
+            colour = self._colouring.colours(bed, row)
+            mark, _, finish = self._colouring.style(bed, colour)
+            gloss = np.full(len(colour), GLOSS) if finish is None else finish[:, 1]
+            axes = _marked_axes(bed, row)
+        if fixed.shape[-1] == 4 and len(fixed):
+            count = len(fixed)
+            place, radius = np.concatenate([place, fixed[:, :3]]), np.concatenate([radius, fixed[:, 3]])
+            colour = np.concatenate([colour, np.tile(self._theme.fixed, (count, 1))])
+            gloss = np.concatenate([gloss, np.zeros(count)])
+            if axes is not None:
+                axes, mark = np.concatenate([axes, np.zeros((count, 3))]), np.concatenate([mark, np.zeros((count, 3))])
+        return place, radius, Paints(colour, gloss, axes, mark)
+
+    def _in_sight(self, bed: Bed, row: float) -> np.ndarray:
+        """Places (n, 3) m of grains, NaN for those that are cut away or far from the tank."""
+        place, reach = bed.position(row), self._reach[self.beds.index(bed)]
+        off = (place < reach.min(axis=0) - bed.radius[:, None]) | (place > reach.max(axis=0) + bed.radius[:, None])
+        place = np.where(off.any(axis=1, keepdims=True), np.nan, place)
+        return place if self._sight.section is None else self._sight.section.shown(place)
+
+    def _paint_trails(self, part: np.ndarray, layers: Layers, camera: SpaceCamera, k: int, frame: int) -> None:
+        """The ways that the grains have come in the last pictures, relative to the tank."""
+        bed = self.beds[k]
+        if bed.empty:
+            return
+        rows = [self._rows[k][max(frame - back, 0)] for back in range(TRAILS)]
+        places = [self._in_sight(bed, row) for row in rows]
+        way = sum(lengths(one - two) for one, two in pairwise(places))
+        moved = np.isfinite(way) & (way > LEAST * bed.radius)
+        scale, lines = camera.screen.scale * THICK * bed.radius[moved], []
+        for back, (one, two) in enumerate(pairwise(places)):
+            thick = scale * (1.0 - (back + 0.5) / (TRAILS - 1))
+            lines.append(lines_between(camera, np.stack([one[moved], two[moved]], axis=1), thick, 1.0))
+        paint_lines_in_space(part, layers, np.concatenate(lines), self._theme.ink)
+
+    def _paint_arrow(self, part: np.ndarray, camera: SpaceCamera, k: int, frame: int) -> None:
+        """The way of the tank's upper corner from rest to now."""
+        corners, stance = self.beds[k].footage.space.walls.points, self._stance[frame, k]
+        flat = camera.gaze.flat(corners)
+        corner = int(np.argmax(flat @ [1.0, 2.0]))
+        away = AWAY * self.setting.unit / camera.screen.scale * np.sign(flat[corner] - flat.mean(axis=0))
+        start = (corners[corner] + away @ camera.gaze.axes[:2])[None]
+        way = [carried(start, share * stance)[0] for share in np.linspace(0.0, 1.0, STEPS + 1)]
+        paint_way(part, camera.pixels(np.array(way)), self.setting.unit / np.sqrt(len(self.beds)), self._theme.accent)
+
+
+def _moved(plate: Walls, stance: np.ndarray) -> Walls:
+    return plate.carried(stance[:3], rotation(stance[3:]))
+
+
+def _reach(bed: Bed) -> np.ndarray:
+    """The corners of a bed's tank, and of the box around what stands out of it, up to a limit, (n, 3) m."""
+    space, footage = bed.footage.space, bed.footage
+    points = space.walls.points
+    low, high = points.min(axis=0), points.max(axis=0)
+    if not footage.protrudes:
+        return points
+    room, found = ROOM * float(np.ptp(points, axis=0).max()), [low, high]
+    for _, frame in spread([bed]):
+        places = [_moved(plate, space.part_at(k, bed.world, frame)).points for k, plate in enumerate(space.plates)]
+        places += [bed.position(frame)] if footage.open_edges and not bed.empty else []
+        found += [pick.reduce(place) for place in places for pick in (np.fmin, np.fmax)]
+    around = np.clip(found, low - room, high + room)
+    ends = np.array([np.nanmin(around, axis=0), np.nanmax(around, axis=0)])
+    corners = [(ends[a, 0], ends[b, 1], ends[c, 2]) for a in (0, 1) for b in (0, 1) for c in (0, 1)]
+    return np.concatenate([points, corners])
+
+
+def _marked_axes(bed: Bed, row: float) -> np.ndarray | None:
+    """Unit vectors (n, 3) to the marks of grains whose turns are recorded as vectors (n, 3) rad, else None."""
+    angle = bed.angle(row)
+    if angle.ndim < 2:
+        return None
+    axes = np.random.default_rng(SEED).normal(size=angle.shape)
+    return turned_axes(axes / np.linalg.norm(axes, axis=1, keepdims=True), angle)
