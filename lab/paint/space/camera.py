@@ -4,7 +4,7 @@ Points are (y, z, x) as everywhere. From azimuth 0 and elevation 0 the picture i
 upwards, x towards the viewer. A growing azimuth takes the camera to the right around the vertical.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -92,10 +92,16 @@ def gaze_at(points: np.ndarray, azimuth: float, elevation: float, distance: floa
     return Gaze(middle, distance or AWAY * around, azimuth, elevation)
 
 
-def ground(gaze: Gaze, points: np.ndarray, azimuths: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper corner (2,) m of all that points (n, 3) reach in the picture's plane from these azimuths."""
-    seen = np.concatenate([replace(gaze, azimuth=float(azimuth)).flat(points) for azimuth in azimuths])
-    return seen.min(axis=0), seen.max(axis=0)
+def ground(gaze: Gaze, shown: Iterable[tuple[float, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner (2,) m of all that is seen in the picture's plane.
+
+    shown: pairs of an azimuth (rad) and of points (n, 3) m that are seen from there.
+    """
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for azimuth, points in shown:
+        seen = replace(gaze, azimuth=float(azimuth)).flat(points)
+        low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))
+    return low, high
 
 
 def framing(
@@ -105,7 +111,7 @@ def framing(
 
     box: left, top, right, bottom. The scale is the same at all of them, so nothing grows or shrinks in an orbit.
     """
-    low, high = ground(gaze, points, azimuths)
+    low, high = ground(gaze, ((azimuth, points) for azimuth in azimuths))
     left, top, right, bottom = box
     scale = float((np.array([right - left, bottom - top]) / np.maximum(high - low, 1e-30)).min())
     middle = 0.5 * np.array([left + right, top + bottom]) - scale * 0.5 * (low + high) * [1.0, -1.0]

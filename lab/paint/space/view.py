@@ -1,6 +1,6 @@
 """The view of scenes in space: tanks side by side in one scale, seen from one direction, with what is in them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -49,19 +49,19 @@ class SpaceView:
         self._azimuth = orbit(sight.azimuth, sight.turns, time)
         self._moves = bool(np.abs(self._stance).max(initial=0.0) > STILL)
         self.overlay = Overlay("none", self.beds, rows, setting.theme)
-        self._reach = [_reach(bed) for bed in beds]
+        self._reach = [_reach(bed, ROOM / np.sqrt(len(beds))) for bed in beds]
         self._cameras = self._place_beds()
         self._layers: dict[tuple, Layers] = {}  # by the size of the part of the picture
 
     def _place_beds(self) -> list[SpaceCamera]:
         """The camera of each bed for the points of the earth, from the first azimuth; and the cells."""
         unit, count = self.setting.unit, len(self.beds)
-        shown = [self._framed(k) for k in range(count)]
-        gazes = [gaze_at(points, self._sight.azimuth, self._sight.elevation) for points in shown]
-        away = max(gaze.distance for gaze in gazes)
-        gazes = [gaze_at(points, gaze.azimuth, gaze.elevation, away) for points, gaze in zip(shown, gazes, strict=True)]
-        azimuths = np.unique(self._azimuth)
-        grounds = [ground(gaze, points, azimuths) for gaze, points in zip(gazes, shown, strict=True)]
+        shown = [list(self._framed(k)) for k in range(count)]
+        every = [np.concatenate([points for _, points in one]) for one in shown]
+        stand = self._sight.azimuth, self._sight.elevation
+        away = max(gaze_at(points, *stand).distance for points in every)
+        gazes = [gaze_at(points, *stand, away) for points in every]
+        grounds = [ground(gaze, one) for gaze, one in zip(gazes, shown, strict=True)]
         around = (WALL + ARROW * self._moves / np.sqrt(count)) * unit
         lost = count > 1 and any(bed.footage.ends[bed.world] for bed in self.beds)
         named = any(bed.name for bed in self.beds)
@@ -69,10 +69,11 @@ class SpaceView:
         self.cameras, self.names_at, self.name_width = self._cells.cameras, self._cells.names, self._cells.width
         return [SpaceCamera(gaze, screen) for gaze, screen in zip(gazes, self.cameras, strict=True)]
 
-    def _framed(self, k: int) -> np.ndarray:
-        """The points (n, 3) m that the camera is to show of bed k: at rest, and wherever its tank goes."""
-        points, stance = self._reach[k], np.unique(self._stance[:, k], axis=0)
-        return np.concatenate([points, *(carried(points, one) for one in stance)])
+    def _framed(self, k: int) -> Iterator[tuple[float, np.ndarray]]:
+        """The points (n, 3) m that the camera is to show of bed k at each azimuth: at rest, and where its tank is."""
+        points = self._reach[k]
+        for azimuth, *stance in np.unique(np.column_stack([self._azimuth, self._stance[:, k]]), axis=0):
+            yield azimuth, np.concatenate([points, carried(points, np.array(stance))]) if self._moves else points
 
     def style(self, grains: Colouring | None, water: object, hues: Sequence[tuple]) -> None:
         """Say what the colours show."""
@@ -187,14 +188,14 @@ def _moved(plate: Walls, stance: np.ndarray) -> Walls:
     return plate.carried(stance[:3], rotation(stance[3:]))
 
 
-def _reach(bed: Bed) -> np.ndarray:
-    """The corners of a bed's tank, and of the box around what stands out of it, up to a limit, (n, 3) m."""
+def _reach(bed: Bed, most: float) -> np.ndarray:
+    """The corners of a tank, and of the box around what stands out by `most` of its size at most, (n, 3) m."""
     space, footage = bed.footage.space, bed.footage
-    points = space.walls.points
+    points = space.walls.outmost
     low, high = points.min(axis=0), points.max(axis=0)
     if not footage.protrudes:
         return points
-    room, found = ROOM * float(np.ptp(points, axis=0).max()), [low, high]
+    room, found = most * float(np.ptp(points, axis=0).max()), [low, high]
     for _, frame in spread([bed]):
         places = [_moved(plate, space.part_at(k, bed.world, frame)).points for k, plate in enumerate(space.plates)]
         places += [bed.position(frame)] if footage.open_edges and not bed.empty else []

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+MANY = 200  # corners
 SAME = 1e-6  # of the size of all: corners that are closer are one
 
 
@@ -41,6 +42,18 @@ class Walls:
         points = np.concatenate([np.zeros((0, 3)), *(one.points for one in found)])
         both = np.concatenate([np.zeros(0, dtype=bool), *(one.both for one in found)])
         return cls(points, np.concatenate([*first, [len(points)]]).astype(np.int32), both)
+
+    @cached_property
+    def outmost(self) -> np.ndarray:
+        """Corners (k, 3) m between which all others lie, of many those of their convex hull."""
+        if len(self.points) < MANY:
+            return np.unique(self.points, axis=0)
+        from scipy.spatial import ConvexHull, QhullError  # takes a moment, and boxes need none
+
+        try:
+            return self.points[ConvexHull(self.points).vertices]
+        except QhullError:  # all in one plane
+            return np.unique(self.points, axis=0)
 
     @cached_property
     def after(self) -> np.ndarray:

@@ -16,7 +16,7 @@ from lab.paint.space.raster.layers import NOTHING, WALL, Layers, Numbers, Whole,
 
 TAPS, TILE = 12, 4  # points a pixel; side of a tile in pixels
 WINDINGS = 5  # of the spiral
-LEAST, MOST = 5.0, 40.0  # pixels: radius of the spiral
+LEAST, MOST = 0.007, 0.055  # radius of the spiral over the height of the picture
 REACH = 2.5  # its radius over the mean radius of the spheres
 STRENGTH, ON_WALLS = 3.0, 1.7  # of the obscurance, on spheres and on walls
 FLOOR = 0.12  # least weight of what is in the way, however near to the camera: so deep gaps are dark
@@ -30,8 +30,8 @@ def find_open_sky(layers: Layers, balls: np.ndarray, planes: np.ndarray, radius:
 
     balls, planes: of the spheres and walls in the layers; radius, away: of a typical sphere and its distance, m.
     """
-    focal = layers.lens[0]
-    pixels = float(np.clip(REACH * radius * focal / away, LEAST, MOST))
+    focal, height = layers.lens[0], len(layers.depth)
+    pixels = float(np.clip(REACH * radius * focal / away, LEAST * height, MOST * height))
     _see(layers.depth, layers.who, layers.sky, balls, planes, _spirals(pixels), layers.lens, pixels * away / focal)
 
 
