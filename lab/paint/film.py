@@ -20,8 +20,8 @@ from lab.paint.painter import Camera
 from lab.paint.scene.inset import Inset
 from lab.paint.scene.view import SceneView, ViewSetting
 from lab.paint.space.camera import SpaceCamera
-from lab.paint.space.sight import Sight
 from lab.paint.space.view import SpaceView
+from lab.paint.space.viewpoint import Viewpoint
 from lab.paint.water.layer import WaterLayer
 from lab.preset.sections.ship import axis_motion
 
@@ -172,7 +172,7 @@ class Film:
         look, layout = self._look, self._layout
         setting = ViewSetting(layout["view"], layout.canvas, layout.unit, self._theme, look.frame, look.overlay)
         if self._stance is not None:
-            return SpaceView(self._beds, setting, Sight.of(look), np.array(self._rows), self._stance, self.time)
+            return SpaceView(self._beds, setting, Viewpoint.of(look), np.array(self._rows), self._stance, self.time)
         return SceneView(self._beds, setting, np.array(self._rows), self._pose, self.time)
 
     @property

@@ -217,14 +217,16 @@ def test_render_passes_on_all_options(monkeypatch):
     sys.modules["lab.paint.video"].target_of = lambda path, out, png: out or path
     done = call("render", "there", "--out", "out.mp4", "--colour", "layer", "--frame", "earth",
                 "--width", "640", "--height", "360", "--world", "2", "--theme", "dark", "--cargo", "coal",
-                "--overlay", "trails", "--inset", "surface", "--speed", "0.5", "--hero")  # fmt: skip
+                "--overlay", "trails", "--inset", "surface", "--speed", "0.5", "--hero", "--azimuth", "-40 deg",
+                "--elevation", "10 deg", "--orbit", "-0.5", "--cut", "-3 mm", "--slice", "20 mm")  # fmt: skip
     assert done.exit_code == 0 and done.stdout == "out.mp4\n"
     (arguments, options), = calls  # fmt: skip
     assert arguments == (Path("there"), Path("out.mp4"))
     assert callable(options.pop("progress"))
     look = {"colour": "layer", "frame": "earth", "width": 640, "height": 360, "world": 2}
     style = {"theme": "dark", "cargo": "coal", "overlay": "trails", "inset": "surface"}
-    assert options == {**look, **style, "speed": 0.5, "hero": True, "png": False, "sound": False}
+    space = {"azimuth": "-40 deg", "elevation": "10 deg", "orbit": "-0.5", "cut": "-3 mm", "slice": "20 mm"}
+    assert options == {**look, **style, **space, "speed": 0.5, "hero": True, "png": False, "sound": False}
     call("render", "there", "--png")
     assert calls[1][0] == (Path("there"), None) and calls[1][1]["png"] is True
 

@@ -9,7 +9,7 @@ from lab.base.errors import LabError
 from lab.paint.footage import Bed, Footage
 from lab.preset.fields import taken_of
 from lab.preset.reader import read
-from lab.preset.sections.video import OF_SPACE, Video, check_sight, colours_of
+from lab.preset.sections.video import OF_SPACE, Video, check_viewpoint, colours_of
 from lab.preset.units import quoted
 
 WORDS = {name: taken_of(Video)[name].words for name in ("frame", "theme", "overlay", "inset", "cargo")}
@@ -56,7 +56,7 @@ def choose_look(footage: Footage, **options: object) -> Look:
     if look.inset is None:
         look = replace(look, inset="surface" if _is_flume(footage) else "none")
     _check_size(look)
-    check_sight(look, footage.space is not None)
+    check_viewpoint(look, footage.space is not None)
     if look.colour not in words:
         raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(words)}.")
     for name, known in WORDS.items():

@@ -19,8 +19,8 @@ from lab.paint.space.painter import Skin, paint_space
 from lab.paint.space.raster.layers import Layers
 from lab.paint.space.raster.lines import edge_lines, lines_between, paint_lines_in_space
 from lab.paint.space.raster.shade import Paints
-from lab.paint.space.sight import Sight
 from lab.paint.space.stance import carried, lengths, rotation, turned_axes
+from lab.paint.space.viewpoint import Viewpoint
 from lab.paint.space.walls import Walls
 
 EDGE = 0.065  # half thickness of edges in u
@@ -38,15 +38,15 @@ class SpaceView:
         self,
         beds: Sequence[Bed],
         setting: ViewSetting,
-        sight: Sight,
+        viewpoint: Viewpoint,
         rows: np.ndarray,
         stance: np.ndarray,
         time: np.ndarray,
     ) -> None:
-        self.beds, self.setting, self._sight, self._theme = list(beds), setting, sight, setting.theme
+        self.beds, self.setting, self._viewpoint, self._theme = list(beds), setting, viewpoint, setting.theme
         self._rows, self._time = rows, time
         self._stance = stance if setting.frame == "earth" else np.zeros_like(stance)
-        self._azimuth = orbit(sight.azimuth, sight.turns, time)
+        self._azimuth = orbit(viewpoint.azimuth, viewpoint.turns, time)
         self._moves = bool(np.abs(self._stance).max(initial=0.0) > STILL)
         self.overlay = Overlay("none", self.beds, rows, setting.theme)
         self._reach = [_reach(bed, ROOM / np.sqrt(len(beds))) for bed in beds]
@@ -58,7 +58,7 @@ class SpaceView:
         unit, count = self.setting.unit, len(self.beds)
         shown = [list(self._framed(k)) for k in range(count)]
         every = [np.concatenate([points for _, points in one]) for one in shown]
-        stand = self._sight.azimuth, self._sight.elevation
+        stand = self._viewpoint.azimuth, self._viewpoint.elevation
         away = max(gaze_at(points, *stand).distance for points in every)
         gazes = [gaze_at(points, *stand, away) for points in every]
         grounds = [ground(gaze, one) for gaze, one in zip(gazes, shown, strict=True)]
@@ -137,7 +137,7 @@ class SpaceView:
             place, radius, colour, gloss = np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros(0)
             axes = mark = None
         else:
-            place, radius = self._in_sight(bed, row), bed.radius
+            place, radius = self._shown(bed, row), bed.radius
             colour = self._colouring.colours(bed, row)
             mark, _, finish = self._colouring.style(bed, colour)
             gloss = np.full(len(colour), GLOSS) if finish is None else finish[:, 1]
@@ -151,12 +151,12 @@ class SpaceView:
                 axes, mark = np.concatenate([axes, np.zeros((count, 3))]), np.concatenate([mark, np.zeros((count, 3))])
         return place, radius, Paints(colour, gloss, axes, mark)
 
-    def _in_sight(self, bed: Bed, row: float) -> np.ndarray:
+    def _shown(self, bed: Bed, row: float) -> np.ndarray:
         """Places (n, 3) m of grains, NaN for those that are cut away or far from the tank."""
         place, reach = bed.position(row), self._reach[self.beds.index(bed)]
         off = (place < reach.min(axis=0) - bed.radius[:, None]) | (place > reach.max(axis=0) + bed.radius[:, None])
         place = np.where(off.any(axis=1, keepdims=True), np.nan, place)
-        return place if self._sight.section is None else self._sight.section.shown(place)
+        return place if self._viewpoint.section is None else self._viewpoint.section.shown(place)
 
     def _paint_trails(self, part: np.ndarray, layers: Layers, camera: SpaceCamera, k: int, frame: int) -> None:
         """The ways that the grains have come in the last pictures, relative to the tank."""
@@ -164,7 +164,7 @@ class SpaceView:
         if bed.empty:
             return
         rows = [self._rows[k][max(frame - back, 0)] for back in range(TRAILS)]
-        places = [self._in_sight(bed, row) for row in rows]
+        places = [self._shown(bed, row) for row in rows]
         way = sum(lengths(one - two) for one, two in pairwise(places))
         moved = np.isfinite(way) & (way > LEAST * bed.radius)
         scale, lines = camera.screen.scale * THICK * bed.radius[moved], []

@@ -107,7 +107,7 @@ def colours_of(matters: Collection[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS.get(matter, ())))
 
 
-def check_sight(chosen: Video, in_space: bool) -> None:
+def check_viewpoint(chosen: Video, in_space: bool) -> None:
     """Raise LabError for wishes that pictures of a scene in space, or in the plane, cannot fulfil; also of a `Look`."""
     for name in OF_SPACE:
         if getattr(chosen, name) is not None and not in_space:
@@ -122,7 +122,7 @@ def check_sight(chosen: Video, in_space: bool) -> None:
 
 def check_video(video: Video, matters: Collection[str], in_space: bool = False) -> None:
     """Raise LabError for what cannot be shown, and for picture sizes that the video codec cannot encode."""
-    check_sight(video, in_space)
+    check_viewpoint(video, in_space)
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour and not set(fitting) & set(matters):
         said = f"{' or '.join(fitting)}, and there {'are' if 'grains' in fitting else 'is'} none"

@@ -10,7 +10,7 @@ from lab.paint.space.raster.faces import find_walls
 from lab.paint.space.raster.layers import FAR, NOTHING, WALL, Layers
 from lab.paint.space.raster.shade import Paints
 from lab.paint.space.raster.spheres import Spheres, find_spheres
-from lab.paint.space.sight import across
+from lab.paint.space.viewpoint import across
 from lab.paint.space.walls import Walls, prism
 from solvers.machine.runtime import initialise
 

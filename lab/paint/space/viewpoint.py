@@ -35,7 +35,7 @@ def across(x: float, thick: float | None = None) -> Section:
 
 
 @dataclass(frozen=True)
-class Sight:
+class Viewpoint:
     """Where the camera stands, azimuth and elevation (rad), how often it goes round in a film, and what it shows."""
 
     azimuth: float = AZIMUTH
@@ -44,8 +44,8 @@ class Sight:
     section: Section | None = None
 
     @classmethod
-    def of(cls, look) -> "Sight":
-        """The sight that a look (`lab.paint.page.look.Look`) asks for."""
+    def of(cls, look) -> "Viewpoint":
+        """The viewpoint that a look (`lab.paint.page.look.Look`) asks for."""
         section = None
         if look.cut is not None or look.slice is not None:
             section = across(look.cut or 0.0, look.slice)
