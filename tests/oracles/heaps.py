@@ -42,7 +42,7 @@ class MadeFootage:
     title: str = "Spheres in a box"
 
     def __post_init__(self) -> None:
-        self.space = SpaceScene.of_prism(
+        self.space = SpaceScene.of(
             BOX, ALONG, self.open_edges, {}, (self.stance[:, None],) * 2, (np.zeros((len(self.time), 1, 0, 3)),) * 2
         )
         self.pose = self.series_pose = self.stance[:, None, [0, 1, 5]]

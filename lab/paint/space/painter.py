@@ -10,6 +10,7 @@ from lab.paint.space.raster.faces import find_walls
 from lab.paint.space.raster.layers import Layers
 from lab.paint.space.raster.lines import edge_lines, paint_lines_in_space
 from lab.paint.space.raster.occlusion import find_open_sky
+from lab.paint.space.raster.panes import paint_panes
 from lab.paint.space.raster.shade import Paints, shade
 from lab.paint.space.raster.spheres import Spheres, find_spheres
 from lab.paint.space.walls import Walls
@@ -49,9 +50,10 @@ def paint_space(
     typical = float(np.mean(radius)) if len(radius) else SPARSE * camera.gaze.distance
     balls, paint = _some(spheres.balls), _some(paints.table(spheres.which, camera.gaze.axes))
     find_open_sky(layers, balls, _some(planes), typical, camera.gaze.distance)
-    tints = np.broadcast_to(np.asarray(skin.wall, dtype=float), (max(len(planes), 1), 3))
-    shade(layers, balls, _some(planes), paint, np.ascontiguousarray(tints))
+    tints = np.array(np.broadcast_to(np.asarray(skin.wall, dtype=float), (max(len(planes), 1), 3)))
+    shade(layers, balls, _some(planes), paint, tints)
     compose(picture, layers, balls)
+    paint_panes(picture, layers, camera, walls, tints)
     paint_lines_in_space(picture, layers, edge_lines(camera, walls, skin.half), skin.edge)
     return layers
 

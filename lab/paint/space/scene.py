@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lab.paint.space.stance import stances
-from lab.paint.space.walls import Walls, drawn_out, prism
+from lab.paint.space.walls import Walls, drawn_out, prism, turned_plate, turned_tank
 
 if TYPE_CHECKING:
     from lab.preset.schema import Preset
@@ -30,21 +30,21 @@ class SpaceScene:
     part_stance: np.ndarray
 
     @classmethod
-    def of_prism(
+    def of(
         cls,
         outline: np.ndarray,
-        along: float,
+        along: float | None,
         open_edges: Sequence[int],
         parts: Mapping[str, np.ndarray],
         poses: tuple[np.ndarray, np.ndarray],
         moves: tuple[np.ndarray, np.ndarray],
     ) -> SpaceScene:
-        """A tank with a cross-section (m, 2) y, z that is as long in x as `along` (m), and parts (k, 2) as long.
+        """A tank with a section (m, 2) y, z, and parts (k, 2), all as long in x as `along` (m); None: turned about z.
 
         poses: of frames (F, W, 3 or 6) and of the series; moves: displacements (F, W, P, 2 or 3) and turns (F, W, P) or
         (F, W, P, 3) of the parts.
         """
-        plates = tuple(drawn_out(line, along) for line in parts.values())
+        plates = tuple(drawn_out(line, along) if along else turned_plate(line) for line in parts.values())
         shift, turn = moves
         part = np.zeros((*shift.shape[:-1], 6))
         part[..., : shift.shape[-1]] = shift
@@ -52,7 +52,7 @@ class SpaceScene:
             part[..., 3:] = turn
         else:
             part[..., 5] = turn
-        walls = prism(outline, along, open_edges)
+        walls = prism(outline, along, open_edges) if along else turned_tank(outline, open_edges)
         return cls(walls, plates, *(stances(pose) for pose in poses), part)
 
     def part_at(self, number: int, world: int, row: float) -> np.ndarray:
@@ -65,8 +65,9 @@ class SpaceScene:
 
 def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
     """The scene of a footage (`lab.paint.footage.Footage`) whose preset is of a tank in space; None in the plane."""
-    along = getattr(preset.tank, "along", None)
-    if along is None:
+    solid = getattr(preset.tank, "solid", None)
+    if solid is None:
         return None
+    along = getattr(solid, "along", None)
     poses, moves = (footage.pose, footage.series_pose), (footage.part, footage.part_turn)
-    return SpaceScene.of_prism(footage.outline, along, footage.open_edges, footage.parts, poses, moves)
+    return SpaceScene.of(footage.outline, along, footage.open_edges, footage.parts, poses, moves)

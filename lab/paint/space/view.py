@@ -117,7 +117,7 @@ class SpaceView:
         place, radius, paints = self._cargo(bed, row)
         plates = [_moved(plate, space.part_at(number, bed.world, row)) for number, plate in enumerate(space.plates)]
         walls = Walls.joined([space.walls, *plates]) if plates else space.walls
-        parts = np.arange(len(walls.both)) >= len(space.walls.both)
+        parts = np.arange(len(walls.pane)) >= len(space.walls.pane)
         skin = Skin(np.where(parts[:, None], theme.part, theme.hold), theme.wall, half)
         paint_space(part, camera, place, radius, paints, walls, skin, layers)
         if self.setting.overlay == "trails":

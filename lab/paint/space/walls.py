@@ -1,15 +1,18 @@
 """Walls in space: flat faces that are seen from inside, and the lines along their edges.
 
 A face is drawn where the camera is on its inner side, so the floor and the far walls are behind the cargo; of the near
-walls only the edges are drawn, as of glass.
+walls only the edges are drawn. Panes are seen from both sides, and through.
 """
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
+FACETS = 96  # of a surface turned about an axis
+LEVEL = 1e-6  # slope below which a plate is level
 MANY = 200  # corners
 SAME = 1e-6  # of the size of all: corners that are closer are one
 
@@ -19,19 +22,19 @@ class Walls:
     """Flat faces, their corners counter-clockwise as seen from the inner side.
 
     points (n, 3) m: the corners of all faces, one face after the other; first (m + 1,): where each begins;
-    both (m,): whether a face is seen from both sides, as a plate is.
+    pane (m,): whether a face is a pane, as plates in a tank are.
     """
 
     points: np.ndarray
     first: np.ndarray
-    both: np.ndarray
+    pane: np.ndarray
 
     @classmethod
-    def of(cls, faces: Sequence[np.ndarray], both: bool = False) -> "Walls":
+    def of(cls, faces: Sequence[np.ndarray], pane: bool = False) -> "Walls":
         """Walls of these polygons, each (k, 3) m."""
         first = np.cumsum([0, *(len(face) for face in faces)]).astype(np.int32)
         points = np.concatenate([np.zeros((0, 3)), *faces])
-        return cls(points, first, np.full(len(faces), both))
+        return cls(points, first, np.full(len(faces), pane))
 
     @classmethod
     def joined(cls, several: Iterable["Walls"]) -> "Walls":
@@ -40,8 +43,8 @@ class Walls:
         starts = np.cumsum([0, *(len(one.points) for one in found)])
         first = [start + one.first[:-1] for start, one in zip(starts, found, strict=False)]
         points = np.concatenate([np.zeros((0, 3)), *(one.points for one in found)])
-        both = np.concatenate([np.zeros(0, dtype=bool), *(one.both for one in found)])
-        return cls(points, np.concatenate([*first, [len(points)]]).astype(np.int32), both)
+        pane = np.concatenate([np.zeros(0, dtype=bool), *(one.pane for one in found)])
+        return cls(points, np.concatenate([*first, [len(points)]]).astype(np.int32), pane)
 
     @cached_property
     def outmost(self) -> np.ndarray:
@@ -65,7 +68,7 @@ class Walls:
     @cached_property
     def normals(self) -> np.ndarray:
         """Unit normals (m, 3) towards the inside, by the area vector of each polygon: ½ Σ r_k × r_(k+1)."""
-        if not len(self.both):
+        if not len(self.pane):
             return np.zeros((0, 3))
         off = self.points - np.repeat(self.points[self.first[:-1]], np.diff(self.first), axis=0)
         area = np.add.reduceat(np.cross(off, off[self.after]), self.first[:-1], axis=0)
@@ -74,12 +77,12 @@ class Walls:
     @cached_property
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
         """Ends (e, 2, 3) m of all edges and the two faces (e, 2) at each; −1 where there is only one."""
-        if not len(self.both):
+        if not len(self.pane):
             return np.zeros((0, 2, 3)), np.zeros((0, 2), dtype=int)
         size = max(float(np.ptp(self.points, axis=0).max()), 1e-300)
         _, corner = np.unique(np.round(self.points / (SAME * size)).astype(np.int64), axis=0, return_inverse=True)
         pairs = np.sort(np.column_stack([corner.ravel(), corner.ravel()[self.after]]), axis=1)
-        face = np.repeat(np.arange(len(self.both)), np.diff(self.first))
+        face = np.repeat(np.arange(len(self.pane)), np.diff(self.first))
         order = np.lexsort((face, pairs[:, 1], pairs[:, 0]))
         order = order[pairs[order, 0] != pairs[order, 1]]
         new = np.append(True, (np.diff(pairs[order], axis=0) != 0).any(axis=1))
@@ -92,21 +95,59 @@ class Walls:
 
     def carried(self, place: np.ndarray, turned: np.ndarray) -> "Walls":
         """These walls after a rotation (3, 3) about the origin and a displacement (3,), m."""
-        found = Walls(place + self.points @ turned.T, self.first, self.both)
+        found = Walls(place + self.points @ turned.T, self.first, self.pane)
         ends, faces = self.edges
         found.__dict__.update(edges=(place + ends @ turned.T, faces), normals=self.normals @ turned.T, after=self.after)
         return found
 
     def facing(self, eye: np.ndarray) -> np.ndarray:
-        """Whether (m,) each face is drawn for a camera at this place (3,), m."""
-        return (((eye - self.points[self.first[:-1]]) * self.normals).sum(axis=1) > 0.0) | self.both
+        """Whether (m,) each face is seen by a camera at this place (3,), m."""
+        return (((eye - self.points[self.first[:-1]]) * self.normals).sum(axis=1) > 0.0) | self.pane
 
 
 def drawn_out(line: np.ndarray, along: float) -> Walls:
-    """A plate with a cross-section (m, 2) y, z in m, as long in x as `along` (m), seen from both sides."""
+    """A plate with a cross-section (m, 2) y, z in m, as long in x as `along` (m)."""
     ends = [np.column_stack([line, np.full(len(line), end)]) for end in (0.5 * along, -0.5 * along)]
     pieces = [np.array([ends[1][k + 1], ends[1][k], ends[0][k], ends[0][k + 1]]) for k in range(len(line) - 1)]
-    return Walls.of(pieces, both=True)
+    return Walls.of(pieces, pane=True)
+
+
+def turned_plate(line: np.ndarray) -> Walls:
+    """A plate with a section (m, 2) y, z in m, turned about z: seen from the axis, where it is level a pane.
+
+    What is drawn left of the axis is the same again, and is left out.
+    """
+    pieces = [Walls.of([])]
+    for start, end in pairwise(line):
+        level = abs(end[1] - start[1]) < LEVEL * abs(end[0] - start[0])
+        pieces.append(_turned(*((start, end) if end[1] > start[1] else (end, start)), pane=level))
+    return Walls.joined(pieces)
+
+
+def turned_tank(outline: np.ndarray, open_edges: Sequence[int] = ()) -> Walls:
+    """The walls of a tank with a section (m, 2) y, z in m, the same on both sides of y = 0, turned about z."""
+    pairs = [(outline[k], outline[(k + 1) % len(outline)]) for k in range(len(outline)) if k not in open_edges]
+    pairs = pairs if _counter_clockwise(outline) else [(end, start) for start, end in pairs]
+    return Walls.joined([_turned(start, end) for start, end in pairs])
+
+
+def _turned(start: np.ndarray, end: np.ndarray, pane: bool = False) -> Walls:
+    """A straight piece of a section, as far as it is right of the axis, turned; its inner side is on its left."""
+    if max(start[0], end[0]) <= 0.0:
+        return Walls.of([])
+    low, high = sorted((start, end), key=lambda point: point[0])
+    axis = low + max(-low[0], 0.0) / (high[0] - low[0]) * (high - low) if low[0] < 0.0 else low
+    start, end = (axis, high) if low is start else (high, axis)
+    angle = 2.0 * np.pi / FACETS * np.arange(FACETS + 1)
+    one, two = (
+        np.column_stack([r * np.cos(angle), np.full(FACETS + 1, z), r * np.sin(angle)]) for r, z in (start, end)
+    )
+    return Walls.of([np.array([two[k], one[k], one[k + 1], two[k + 1]]) for k in range(FACETS)], pane)
+
+
+def _counter_clockwise(outline: np.ndarray) -> bool:
+    after = np.roll(outline, -1, axis=0)
+    return bool((outline[:, 0] * after[:, 1] - outline[:, 1] * after[:, 0]).sum() > 0.0)
 
 
 def prism(outline: np.ndarray, along: float, open_edges: Sequence[int] = ()) -> Walls:
@@ -116,13 +157,11 @@ def prism(outline: np.ndarray, along: float, open_edges: Sequence[int] = ()) -> 
     """
     count = len(outline)
     near, far = (np.column_stack([outline, np.full(count, end)]) for end in (0.5 * along, -0.5 * along))
-    after = np.roll(outline, -1, axis=0)
-    mathematical = (outline[:, 0] * after[:, 1] - outline[:, 1] * after[:, 0]).sum() > 0.0
-    sides = []
+    inward, sides = _counter_clockwise(outline), []
     for k in range(count):
         if k not in open_edges:
             beside = (k + 1) % count
             side = np.array([far[beside], far[k], near[k], near[beside]])
-            sides.append(side if mathematical else side[::-1])
-    ends = (far, near[::-1]) if mathematical else (far[::-1], near)
+            sides.append(side if inward else side[::-1])
+    ends = (far, near[::-1]) if inward else (far[::-1], near)
     return Walls.of([*sides, *ends])

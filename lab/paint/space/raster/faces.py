@@ -9,12 +9,12 @@ from lab.paint.space.raster.layers import WALL, Layers, Numbers, Whole, ray_at, 
 from lab.paint.space.walls import Walls
 
 
-def find_walls(layers: Layers, camera: SpaceCamera, walls: Walls) -> np.ndarray:
+def find_walls(layers: Layers, camera: SpaceCamera, walls: Walls, panes: bool = False) -> np.ndarray:
     """Write into the layers where walls are seen; returns their planes (m, 4) in camera coordinates: n · r = d.
 
-    Their normals point towards the camera.
+    Their normals point towards the camera. panes: the panes alone, else all that are none.
     """
-    drawn = np.flatnonzero(walls.facing(camera.gaze.eye)).astype(np.int32)
+    drawn = np.flatnonzero(walls.facing(camera.gaze.eye) & (walls.pane == panes)).astype(np.int32)
     planes = _planes(camera, walls)
     if len(drawn):
         corners = camera.pixels(walls.points)

@@ -19,7 +19,7 @@ Numbers = ti.types.ndarray(dtype=ti.f64, ndim=1)
 class Layers:
     """Of one picture (h, w): depth m along the gaze, f32; who is seen, i32; sky: the open share, f32; shaded: colours.
 
-    lens: see `lens_of`. The memory is kept from picture to picture of one size.
+    lens: see `lens_of`; panes: those of panes, once there are some. The memory is kept for pictures of one size.
     """
 
     def __init__(self, height: int, width: int) -> None:
@@ -27,6 +27,7 @@ class Layers:
         self.who = np.empty((height, width), dtype=np.int32)
         self.sky = np.empty((height, width), dtype=np.float32)
         self.shaded = np.empty((height, width, 3), dtype=np.uint8)
+        self.panes: Layers | None = None
 
     def clear(self, camera: SpaceCamera) -> None:
         """Begin a picture by this camera, in which nothing is seen yet."""

@@ -131,7 +131,7 @@ def test_plates_move_as_they_are_recorded_in_a_plane_and_in_space():
     flat = (np.stack([0.0 * shift, shift])[:, None], np.stack([0.0 * turn, turn])[:, None])
     whole = (np.pad(flat[0], [(0, 0), (0, 0), (0, 0), (0, 1)]), np.stack([0.0 * flat[1], 0.0 * flat[1], flat[1]], -1))
     for moves in (flat, whole):
-        scene = SpaceScene.of_prism(BOX, ALONG, (), line, (still, still), moves)
+        scene = SpaceScene.of(BOX, ALONG, (), line, (still, still), moves)
         end = carried(scene.plates[0].points, scene.part_at(0, 0, 1.0))
         np.testing.assert_allclose(end[:, 0], 0.0, atol=1e-12)
         np.testing.assert_allclose(sorted(set(np.round(end[:, 1], 9))), [0.02, 0.12])

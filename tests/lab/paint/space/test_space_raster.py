@@ -1,5 +1,7 @@
 """Pictures of spheres in space: perspective, what hides what, frames around a tank, cuts, and bytes at any threads."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -8,10 +10,11 @@ from lab.paint.space.camera import Gaze, SpaceCamera, framing, gaze_at, orbit
 from lab.paint.space.painter import Skin, paint_space
 from lab.paint.space.raster.faces import find_walls
 from lab.paint.space.raster.layers import FAR, NOTHING, WALL, Layers
+from lab.paint.space.raster.panes import TINT
 from lab.paint.space.raster.shade import Paints
 from lab.paint.space.raster.spheres import Spheres, find_spheres
 from lab.paint.space.viewpoint import across
-from lab.paint.space.walls import Walls, prism
+from lab.paint.space.walls import FACETS, Walls, prism, turned_plate, turned_tank
 from solvers.machine.runtime import initialise
 
 SKIN = Skin((250, 252, 253), (90, 98, 110), 1.0)
@@ -140,15 +143,48 @@ def test_a_cut_leaves_out_exactly_what_is_in_front_of_it(thick):
 
 @pytest.mark.parametrize("outline", [BOX, BOX[::-1]])
 def test_walls_never_hide_what_is_in_the_tank(outline):
-    """The faces towards the camera are left out, whichever way the outline runs; one plate in between hides it all."""
+    """The faces towards the camera are left out, whichever way the outline runs."""
     box, inside = prism(outline, 0.15), np.array([(0.0, 0.1, 0.0)])
-    plate = Walls.of([np.array([(-1.0, 0.1, -1.0), (1.0, 0.1, -1.0), (1.0, 0.1, 1.0), (-1.0, 0.1, 1.0)])], both=True)
     for azimuth, elevation in np.random.default_rng(2).uniform(-3.0, 3.0, (12, 2)) * [1.0, 0.5]:
         camera = ahead(200.0, 1.0, azimuth, elevation)
         assert seen(inside, [0.02], camera, box) == {0}
-    above, below = ahead(elevation=0.9), ahead(elevation=-0.9)
-    under = inside - [0.0, 0.05, 0.0]
-    assert [seen(under, [0.02], camera, plate) for camera in (above, below)] == [set(), {0}]
+
+
+def test_a_pane_tints_what_is_behind_it_and_nothing_else():
+    sphere, square = np.array([(0.0, 0.0, 0.0)]), np.array([(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)])
+    plain, pictures = black(sphere, 0.05, ahead(azimuth=0.2))[0], {}
+    for x in (-0.1, 0.1):
+        pane = Walls.of([np.column_stack([square, np.full(4, x)])], pane=True)
+        pictures[x] = black(sphere, 0.05, ahead(azimuth=0.2), pane)[0]
+    middle = (SIZE[0] // 2, SIZE[1] // 2)
+    np.testing.assert_array_equal(pictures[-0.1][middle], plain[middle])
+    tint = np.array(SKIN.wall) * TINT
+    np.testing.assert_allclose(pictures[0.1][middle], tint, atol=1.0)
+
+
+def test_a_turned_tank_is_seen_from_inside_and_has_the_area_of_its_cone():
+    """A barrel over a cone with an opening: faces inwards from anywhere; regular prisms and pyramids of 96 sides."""
+    half = np.array([(0.0, 0.0), (0.03, 0.0), (0.1, 0.07), (0.1, 0.2), (0.0, 0.2)])
+    whole = np.concatenate([half[:-1], half[:0:-1] * [-1.0, 1.0]])[1:]
+    for outline in (whole, whole[::-1]):
+        tank = turned_tank(outline)
+        middles = np.array([tank.points[a:b].mean(axis=0) for a, b in pairwise(tank.first)])
+        assert (((np.array([0.0, 0.1, 0.0]) - middles) * tank.normals).sum(axis=1) > 0.0).all()
+    side = 2.0 * np.sin(np.pi / FACETS)
+    wanted = FACETS * side * (0.1 * 0.13 + 0.065 * np.hypot(0.07, 0.07 * np.cos(np.pi / FACETS)))
+    wanted += FACETS * 0.5 * side * np.cos(np.pi / FACETS) * (0.03**2 + 0.1**2)
+    assert sum(area(tank.points[a:b]) for a, b in pairwise(tank.first)) == pytest.approx(wanted, rel=1e-9)
+    hopper = turned_plate(np.array([(-0.05, 0.1), (-0.02, 0.05), (0.02, 0.05), (0.05, 0.1)]))
+    assert len(hopper.pane) == 2 * FACETS and hopper.pane.sum() == FACETS
+    slant = ~hopper.pane
+    starts = hopper.points[hopper.first[:-1]][slant] * [1.0, 0.0, 1.0]
+    assert ((starts * hopper.normals[slant]).sum(axis=1) < 0.0).all()
+
+
+def area(corners):
+    """Area of a flat polygon (k, 3)."""
+    off = corners - corners[0]
+    return 0.5 * np.linalg.norm(np.cross(off, np.roll(off, -1, axis=0)).sum(axis=0))
 
 
 def test_an_end_wall_that_is_not_convex_has_its_area_and_the_depth_of_its_plane():
@@ -156,7 +192,7 @@ def test_an_end_wall_that_is_not_convex_has_its_area_and_the_depth_of_its_plane(
     tank, camera, layers = prism(corner, 0.2), ahead(distance=2.0), Layers(*SIZE)
     layers.clear(camera)
     find_walls(layers, camera, tank)
-    far = layers.who == WALL - (len(tank.both) - 2)
+    far = layers.who == WALL - (len(tank.pane) - 2)
     np.testing.assert_allclose(layers.depth[far], 2.1, rtol=1e-6)
     assert far.sum() == pytest.approx(0.39 * (200.0 / 2.1) ** 2, abs=2 * 280)  # at most the pixels along its border
     assert (layers.depth[layers.who == NOTHING] == np.float32(FAR)).all()
