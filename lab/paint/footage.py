@@ -224,7 +224,7 @@ class Bed:
         return lengths(self.footage.grains("velocity", frame, self.world))
 
     def angle(self, frame: int) -> np.ndarray:
-        """Grain angles (n,) in the tank frame, rad."""
+        """Grain angles (n,) in the tank frame, in space (n, 3) the integrals of their spins, rad."""
         return self.footage.grains("angle", frame, self.world) + self.heel(frame)
 
     def pressing(self, frame: float) -> Pressing:

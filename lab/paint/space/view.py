@@ -8,6 +8,8 @@ from PIL import Image
 
 from lab.paint.colours import Colouring, spread
 from lab.paint.footage import Bed
+from lab.paint.page.theme import blend
+from lab.paint.raster.grains import FLAT
 from lab.paint.scene.cells import Room, lay_cells
 from lab.paint.scene.drive import AWAY, STEPS, paint_way
 from lab.paint.scene.ends import BAND, draw_ends
@@ -15,17 +17,18 @@ from lab.paint.scene.overlay import TRAILS, Overlay
 from lab.paint.scene.trails import LEAST, THICK
 from lab.paint.scene.view import ARROW, NAME, ROOM, STILL, WALL, ViewSetting
 from lab.paint.space.camera import SpaceCamera, gaze_at, ground, orbit
+from lab.paint.space.marks import TurningAxes
 from lab.paint.space.painter import Skin, paint_space
 from lab.paint.space.raster.layers import Layers
 from lab.paint.space.raster.lines import edge_lines, lines_between, paint_lines_in_space
 from lab.paint.space.raster.shade import Paints
-from lab.paint.space.stance import carried, lengths, rotation, turned_axes
+from lab.paint.space.stance import carried, lengths, rotation
 from lab.paint.space.viewpoint import Viewpoint
 from lab.paint.space.walls import Walls
 
 EDGE = 0.065  # half thickness of edges in u
 GLOSS = 0.12  # of grains in the colours of a scale
-SEED = 7  # of the axes at whose ends grains have their marks
+PALE = 0.55  # of the empty tank's colour in that of turned plates; the rest is the parts'
 
 
 class SpaceView:
@@ -51,6 +54,7 @@ class SpaceView:
         self.overlay = Overlay("none", self.beds, rows, setting.theme)
         self._reach = [_reach(bed, ROOM / np.sqrt(len(beds))) for bed in beds]
         self._cameras = self._place_beds()
+        self._axes = [TurningAxes(bed) for bed in beds]
         self._layers: dict[tuple, Layers] = {}  # by the size of the part of the picture
 
     def _place_beds(self) -> list[SpaceCamera]:
@@ -117,8 +121,10 @@ class SpaceView:
         place, radius, paints = self._cargo(bed, row)
         plates = [_moved(plate, space.part_at(number, bed.world, row)) for number, plate in enumerate(space.plates)]
         walls = Walls.joined([space.walls, *plates]) if plates else space.walls
-        parts = np.arange(len(walls.pane)) >= len(space.walls.pane)
-        skin = Skin(np.where(parts[:, None], theme.part, theme.hold), theme.wall, half)
+        tints = np.tile(np.array(theme.hold, dtype=float), (len(walls.pane), 1))
+        tints[len(space.walls.pane) :] = blend(theme.part, theme.hold, PALE)
+        tints[walls.pane] = theme.part
+        skin = Skin(tints, theme.wall, half)
         paint_space(part, camera, place, radius, paints, walls, skin, layers)
         if self.setting.overlay == "trails":
             self._paint_trails(part, layers, camera, k, frame)
@@ -140,8 +146,9 @@ class SpaceView:
             place, radius = self._shown(bed, row), bed.radius
             colour = self._colouring.colours(bed, row)
             mark, _, finish = self._colouring.style(bed, colour)
-            gloss = np.full(len(colour), GLOSS) if finish is None else finish[:, 1]
-            axes = _marked_axes(bed, row)
+            gloss, strength = (GLOSS, FLAT.strength) if finish is None else (finish[:, 1], finish[:, 7:])
+            gloss, mark = np.broadcast_to(gloss, len(colour)), colour + strength * (mark - colour)
+            axes = self._axes[self.beds.index(bed)].at(row)
         if fixed.shape[-1] == 4 and len(fixed):
             count = len(fixed)
             place, radius = np.concatenate([place, fixed[:, :3]]), np.concatenate([radius, fixed[:, 3]])
@@ -199,17 +206,8 @@ def _reach(bed: Bed, most: float) -> np.ndarray:
     for _, frame in spread([bed]):
         places = [_moved(plate, space.part_at(k, bed.world, frame)).points for k, plate in enumerate(space.plates)]
         places += [bed.position(frame)] if footage.open_edges and not bed.empty else []
-        found += [pick.reduce(place) for place in places for pick in (np.fmin, np.fmax)]
+        found += [pick.reduce(place) for place in places if len(place) for pick in (np.fmin, np.fmax)]
     around = np.clip(found, low - room, high + room)
     ends = np.array([np.nanmin(around, axis=0), np.nanmax(around, axis=0)])
     corners = [(ends[a, 0], ends[b, 1], ends[c, 2]) for a in (0, 1) for b in (0, 1) for c in (0, 1)]
     return np.concatenate([points, corners])
-
-
-def _marked_axes(bed: Bed, row: float) -> np.ndarray | None:
-    """Unit vectors (n, 3) to the marks of grains whose turns are recorded as vectors (n, 3) rad, else None."""
-    angle = bed.angle(row)
-    if angle.ndim < 2:
-        return None
-    axes = np.random.default_rng(SEED).normal(size=angle.shape)
-    return turned_axes(axes / np.linalg.norm(axes, axis=1, keepdims=True), angle)

@@ -16,8 +16,8 @@ KEY = (-0.46, 0.70, -0.55)  # direction to the light: right, up, depth
 SKY, GROUND, SUN = 0.68, 0.48, 0.56  # brightness from above, from below, and of the key light
 RIM = 0.22  # how much darker the rim of a sphere is
 GLINT = 5  # its exponent is 2⁵ (Blinn 1977)
-CAP = 0.86  # cosine of the angle that a mark reaches from its axis
-SOFT = 0.05  # of that cosine over which its edge is soft
+CAP = 0.92  # cosine of the angle that a mark reaches from its axis
+SOFT = 0.04  # of that cosine over which its edge is soft
 WALL_SUN = 0.30  # share of the key light's contrast on walls, which are to stay quiet
 
 

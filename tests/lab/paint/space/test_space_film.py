@@ -6,6 +6,7 @@ import pytest
 from lab.base.errors import LabError
 from lab.paint.cargo.looks import Stowage
 from lab.paint.film import Film, choose_look
+from lab.paint.space.marks import TurningAxes
 from lab.paint.space.scene import SpaceScene
 from lab.paint.space.stance import carried, rotation, turned_axes
 from lab.preset.find import load
@@ -137,6 +138,19 @@ def test_plates_move_as_they_are_recorded_in_a_plane_and_in_space():
         np.testing.assert_allclose(sorted(set(np.round(end[:, 1], 9))), [0.02, 0.12])
         np.testing.assert_allclose(scene.part_at(0, 0, 0.5), [0, 0.01, 0, 0, 0, 0.25 * np.pi])
         np.testing.assert_allclose(np.abs(end[:, 2]), 0.5 * ALONG)
+
+
+def test_marks_turn_by_one_axis_after_the_other():
+    """A quarter turn about z, then one about y: the integral of the spin is both, and no turn about their sum."""
+    footage = one_sphere()
+    angle = np.array([(0.0, 0.0, 0.0), (0.0, 0.5 * np.pi, 0.0), (0.5 * np.pi, 0.5 * np.pi, 0.0)])
+    grains = footage.grains
+    footage.grains = lambda name, row, world: angle[row][None] if name == "angle" else grains(name, row, world)
+    axes = TurningAxes(footage.bed)
+    (start,), (end,) = axes.at(0), axes.at(2)
+    wanted = rotation(np.array([0.5 * np.pi, 0.0, 0.0])) @ rotation(np.array([0.0, 0.5 * np.pi, 0.0])) @ start
+    np.testing.assert_allclose(end, wanted, atol=1e-12)
+    np.testing.assert_allclose(axes.at(0)[0], start)  # and back
 
 
 def test_turns_are_right_handed_about_their_vectors():
