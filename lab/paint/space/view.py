@@ -110,6 +110,8 @@ class SpaceView:
             if part.size:
                 self._paint_bed(part, (left, top), k, frame)
                 picture[top:bottom, left:right] = part
+            if self._moves:
+                self._paint_arrow(picture, k, frame)
 
     def _paint_bed(self, part: np.ndarray, corner: tuple[int, int], k: int, frame: int) -> None:
         bed, row, theme, half = self.beds[k], self._rows[k][frame], self._theme, EDGE * self.setting.unit
@@ -128,8 +130,6 @@ class SpaceView:
         paint_space(part, camera, place, radius, paints, walls, skin, layers)
         if self.setting.overlay == "trails":
             self._paint_trails(part, layers, camera, k, frame)
-        if self._moves:
-            self._paint_arrow(part, self.earth_camera(k, frame).shifted(*corner), k, frame)
 
     def _paint_ghost(self, part: np.ndarray, layers: Layers, camera: SpaceCamera, walls: Walls, half: float) -> None:
         """The edges of the tank at rest, behind all else."""
@@ -180,15 +180,16 @@ class SpaceView:
             lines.append(lines_between(camera, np.stack([one[moved], two[moved]], axis=1), thick, 1.0))
         paint_lines_in_space(part, layers, np.concatenate(lines), self._theme.ink)
 
-    def _paint_arrow(self, part: np.ndarray, camera: SpaceCamera, k: int, frame: int) -> None:
+    def _paint_arrow(self, picture: np.ndarray, k: int, frame: int) -> None:
         """The way of the tank's upper corner from rest to now."""
+        camera, unit = self.earth_camera(k, frame), self.setting.unit / np.sqrt(len(self.beds))
         corners, stance = self.beds[k].footage.space.walls.points, self._stance[frame, k]
         flat = camera.gaze.flat(corners)
         corner = int(np.argmax(flat @ [1.0, 2.0]))
-        away = AWAY * self.setting.unit / camera.screen.scale * np.sign(flat[corner] - flat.mean(axis=0))
+        away = AWAY * unit / camera.screen.scale * np.sign(flat[corner] - flat.mean(axis=0))
         start = (corners[corner] + away @ camera.gaze.axes[:2])[None]
         way = [carried(start, share * stance)[0] for share in np.linspace(0.0, 1.0, STEPS + 1)]
-        paint_way(part, camera.pixels(np.array(way)), self.setting.unit / np.sqrt(len(self.beds)), self._theme.accent)
+        paint_way(picture, camera.pixels(np.array(way)), unit, self._theme.accent)
 
 
 def _moved(plate: Walls, stance: np.ndarray) -> Walls:

@@ -10,6 +10,7 @@ from lab.paint.space.camera import Gaze, SpaceCamera, framing, gaze_at, orbit
 from lab.paint.space.painter import Skin, paint_space
 from lab.paint.space.raster.faces import find_walls
 from lab.paint.space.raster.layers import FAR, NOTHING, WALL, Layers
+from lab.paint.space.raster.lines import lines_between, paint_lines_in_space
 from lab.paint.space.raster.panes import TINT
 from lab.paint.space.raster.shade import Paints
 from lab.paint.space.raster.spheres import Spheres, find_spheres
@@ -160,6 +161,22 @@ def test_a_pane_tints_what_is_behind_it_and_nothing_else():
     np.testing.assert_array_equal(pictures[-0.1][middle], plain[middle])
     tint = np.array(SKIN.wall) * TINT
     np.testing.assert_allclose(pictures[0.1][middle], tint, atol=1.0)
+
+
+def test_a_line_is_hidden_by_what_is_in_front_of_it_and_not_by_the_walls_that_it_bounds():
+    camera = ahead()
+    picture, layers = black([(0.0, 0.0, 0.3)], 0.1, camera)
+    line = lines_between(camera, np.array([[(-0.6, 0.0, 0.0), (0.6, 0.0, 0.0)]]), 1.0, 1.0)
+    paint_lines_in_space(picture, layers, line, (255, 0, 0))
+    row, middle = SIZE[0] // 2, SIZE[1] // 2
+    assert picture[row, middle].tolist() == [0, 0, 0] and picture[row, middle + 40].tolist() == [255, 0, 0]
+    under = SpaceCamera(Gaze(np.zeros(3), 1.0, 0.0, 0.05), camera.screen)  # a lid 0.1 m up, seen from 0.05 m up
+    lid = Walls.of([np.array([(-0.3, 0.1, -0.3), (0.3, 0.1, -0.3), (0.3, 0.1, 0.3), (-0.3, 0.1, 0.3)])])
+    picture, layers = black([(5.0, 0.0, 0.0)], 0.1, under, lid)
+    assert (layers.who == WALL).sum() > 100
+    (left, row), (right, _) = under.pixels(np.array([(-0.25, 0.1, -0.3), (0.25, 0.1, -0.3)]))
+    rows = [int(row - 0.5), int(row + 0.5)]  # which the line of two pixels covers
+    assert picture[rows, int(left) : int(right)].max() < 150  # of 185 for the lid and 110 for its edge
 
 
 def test_a_turned_tank_is_seen_from_inside_and_has_the_area_of_its_cone():
