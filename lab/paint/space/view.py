@@ -122,7 +122,7 @@ class SpaceView:
             self._paint_ghost(part, layers, self.earth_camera(k, frame).shifted(*corner), space.walls, half)
         place, radius, paints = self._cargo(bed, row)
         plates = [_moved(plate, space.part_at(number, bed.world, row)) for number, plate in enumerate(space.plates)]
-        walls = Walls.joined([space.walls, *plates]) if plates else space.walls
+        walls = Walls.apart([space.walls, *plates]) if plates else space.walls
         tints = np.tile(np.array(theme.hold, dtype=float), (len(walls.pane), 1))
         tints[len(space.walls.pane) :] = blend(theme.part, theme.hold, PALE)
         tints[walls.pane] = theme.part

@@ -46,6 +46,16 @@ class Walls:
         pane = np.concatenate([np.zeros(0, dtype=bool), *(one.pane for one in found)])
         return cls(points, np.concatenate([*first, [len(points)]]).astype(np.int32), pane)
 
+    @classmethod
+    def apart(cls, several: Sequence["Walls"]) -> "Walls":
+        """All these walls in one, which have no edges in common, and whose edges need not be found again."""
+        found, edges = cls.joined(several), [one.edges for one in several]
+        starts = np.cumsum([0, *(len(one.pane) for one in several)])
+        faces = [np.where(beside < 0, -1, start + beside) for start, (_, beside) in zip(starts, edges, strict=False)]
+        known = {"edges": (np.concatenate([ends for ends, _ in edges]), np.concatenate(faces))}
+        found.__dict__.update(known, normals=np.concatenate([one.normals for one in several]))
+        return found
+
     @cached_property
     def outmost(self) -> np.ndarray:
         """Corners (k, 3) m between which all others lie, of many those of their convex hull."""

@@ -225,6 +225,20 @@ def test_carried_walls_keep_their_edges():
     np.testing.assert_array_equal(same, faces)
 
 
+def test_walls_apart_have_the_edges_and_normals_that_are_found_in_all_of_them():
+    several = [prism(BOX, 0.15, (2,)), Walls.of([]), turned_plate(np.array([(0.02, 0.3), (0.02, 0.25), (0.05, 0.25)]))]
+    apart, joined = Walls.apart(several), Walls.joined(several)
+    np.testing.assert_allclose(apart.normals, joined.normals)
+    found = [
+        sorted(
+            (*np.sort(np.round(ends, 9), axis=0).ravel().tolist(), *np.sort(faces).tolist())
+            for ends, faces in zip(*one.edges, strict=True)
+        )
+        for one in (apart, joined)
+    ]
+    assert len(found[0]) == len(found[1]) and np.allclose(found[0], found[1])
+
+
 def test_the_picture_does_not_depend_on_the_number_of_threads():
     random, pictures = np.random.default_rng(3), []
     place = random.uniform(-1.0, 1.0, (800, 3)) * [0.14, 0.06, 0.06] + [0.0, 0.07, 0.0]
