@@ -8,9 +8,11 @@ from hypothesis import strategies as st
 
 from lab.preset.fields import NAME, Table, Taken, defaults_of, taken_of, walk
 from lab.preset.schema import Preset
+from lab.preset.sections.video import OF_SPACE
 from lab.preset.units import KINDS, kind
 
 FIELDS = dict(walk(Preset))
+IN_SPACE = {f"video.{name}" for name in OF_SPACE}  # keys that only scenes in space take
 KEY = st.sampled_from(sorted({part for key in FIELDS for part in key.split(".")}))
 UNITS = sorted({one.unit for one in KINDS.values()} | {"furlong", "km", "", "GPa", "%"})
 MAGNITUDES = ("0", "-1", "1e300", "1e-300", "1e14", "3", "0.5", "1e-6", "1e999", "nan", "inf", ".", "1,5", "−2", "٣")
@@ -29,8 +31,9 @@ SIZES = (1e-3, 5e-3, 0.05, 0.3, 1.0, 4.0, 50.0, 1e3, 2e9)
 def presets(draw: st.DrawFn, bases: Sequence[Mapping]) -> dict:
     """One of the sound `bases` with some keys of the schema as their fields take them, and some faults."""
     table = json.loads(json.dumps(draw(st.sampled_from(bases))))
+    known = sorted(FIELDS if "along" in table.get("tank", {}) else FIELDS.keys() - IN_SPACE)
     for _ in range(draw(st.integers(0, 3))):
-        key = draw(st.sampled_from(sorted(FIELDS)))
+        key = draw(st.sampled_from(known))
         _put(table, key.replace(NAME, "gate").split("."), draw(values(FIELDS[key])))
     for _ in range(draw(st.integers(0, 2))):
         holder, key = draw(st.sampled_from(list(_places(table)) or [(table, "title")]))
