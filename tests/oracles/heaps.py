@@ -75,6 +75,4 @@ def tilted(diameter: float = 0.006, frames: int = 3, roll: float = -0.35, **more
     share = np.linspace(0.0, 1.0, frames)
     stance = np.zeros((frames, 6))
     stance[:, 5] = roll * share
-    flown = np.array([0.0, 0.0, 0.0])
-    position = place + share[:, None, None] * flown
-    return MadeFootage(position, radius, stance, 4.0 * share, **more)
+    return MadeFootage(np.tile(place, (frames, 1, 1)), radius, stance, 4.0 * share, **more)
