@@ -10,7 +10,6 @@ import numpy as np
 from solvers.grains.pressing import UNTOUCHED, Pressing
 from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
-from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
 from solvers.matters import context_of, made
@@ -288,8 +287,7 @@ class Simulation:
     def placed(self) -> dict[str, np.ndarray]:
         """Where the scene's parts are now: displacements (W, P, axes) m and turns (W, P) about x, in the tank."""
         place, turn = self.parts.places(self.origin + self.time)
-        place = np.pad(place, ((0, 0), (0, 0), (0, self.scene.axes - PLANE)))
-        return {"part": place, "part_turn": turn}
+        return {"part": np.pad(place, ((0, 0), (0, 0), (0, self.scene.axes - place.shape[2]))), "part_turn": turn}
 
     def pressing(self, world: int = 0) -> Pressing:
         """The present elastic contact forces in a world; none without grains."""

@@ -236,7 +236,7 @@ def check(preset: Preset) -> None:
     check_axle(preset.axle, *others, duration_of(preset.run, preset.motion), max(preset.tank.extent))
     check_solids(preset)
     check_stability(preset.stability, preset.ship)
-    check_video(preset.video, preset.matters, getattr(preset.tank, "axes", 2) > 2)
+    check_video(preset.video, preset.matters, preset.axes > 2)
 
 
 def _check_matters(preset: Preset) -> None:

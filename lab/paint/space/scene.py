@@ -65,7 +65,7 @@ class SpaceScene:
 
 def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
     """The scene of a footage (`lab.paint.footage.Footage`) whose preset is of a tank in space; None in the plane."""
-    solid = getattr(preset.tank, "solid", None)
+    solid = preset.tank.solid
     if solid is None:
         return None
     along = getattr(solid, "along", None)
