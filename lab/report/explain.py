@@ -160,7 +160,7 @@ def _ship(preset, simulation: Simulation) -> list[tuple[str, str]]:
 
 def _tank(preset, scene) -> str:
     width, height = (show(extent, "m") for extent in preset.tank.extent)
-    what = [f"{width} wide, {height} high"]
+    what = [f"{width} wide, {height} high", *preset.tank.in_space]
     if preset.tank.open_edges:
         what.append("open at the top")
     lining = scene.grains.fixed if scene.grains else ()

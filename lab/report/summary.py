@@ -219,7 +219,8 @@ def _scene(recording: Recording) -> Iterator[str]:
     if not recording.preset.matters:
         yield "nothing in the tank"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
-    lidless = ", open at the top" if recording.open_edges else ""
+    lidless = "".join(f", {said}" for said in recording.preset.tank.in_space)
+    lidless += ", open at the top" if recording.open_edges else ""
     rough = ", its walls lined with fixed grains" if len(recording.fixed) else ""
     yield f"tank {width} wide and {height} high{lidless}{rough}"
     if recording.parts:

@@ -107,6 +107,16 @@ class Tank(Shell):
         return Turned() if self.turned else Prism(self.along, self.periodic) if self.along else None
 
     @property
+    def in_space(self) -> tuple[str, ...]:
+        """What of it is in space, in words; nothing of one in the plane."""
+        if self.turned:
+            return ("turned about its axis",)
+        if not self.along:
+            return ()
+        slice_of_one = ", a slice of one without an end" if self.periodic else ""
+        return (f"{show(self.along, 'm')} long{slice_of_one}",)
+
+    @property
     def axes(self) -> int:
         """Number of axes of a scene in it."""
         return self.solid.axes if self.solid else PLANE

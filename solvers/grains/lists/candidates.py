@@ -18,7 +18,7 @@ from solvers.space.axes import dot, named
 from solvers.tank.walls import Walls
 
 # Of pairs and wall features: per grain, in the plane and in space, and more (all pairs of 40 grains)
-ROOM, MORE = {PLANE: (8, 3), SPACE: (26, 3)}, (512, 16)
+ROOM, MORE = {PLANE: (8, 3), SPACE: (16, 3)}, (512, 16)
 BESIDE = 1.5  # times as far for grains beside walls as for pairs: neighbours go on together, but past walls
 
 

@@ -13,11 +13,12 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.state import GrainState
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import State
 
 # Skins from and to, and up to where candidates are sought, in mean diameters; the skin over √(v Δt/d) for the fastest
 # grain's speed v: where it is known how neighbours near each other, and where they may come straight at each other.
-TOGETHER, APART = (0.05, 0.25, 1.1, 1.4), (0.05, 0.3, 0.8, 2.0)
+TOGETHER, APART = {PLANE: (0.05, 0.25, 1.1, 1.4), SPACE: (0.05, 0.25, 0.6, 1.4)}, (0.05, 0.3, 0.8, 2.0)
 LEAST_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 LISTS = 7.0  # skins, where all are alike, up to which candidates are sought
 # Skins that a grain, and a moving part, may go until the lists are built anew, in either case
@@ -46,7 +47,7 @@ def widths(scene, skin: float | None, single: bool, together: bool) -> Widths:
     if shapes or single or skin:
         least = skin or (LEAST_OF_CONVEX if shapes and shapes.convex else APART[0]) * diameter
         return Widths(least, least, least if single else LISTS * least)
-    least, most, farthest, keen = TOGETHER if together else APART
+    least, most, farthest, keen = TOGETHER[scene.axes] if together else APART
     return Widths(least * diameter, most * diameter, farthest * diameter, keen**2 * diameter * scene.time_step())
 
 

@@ -9,6 +9,7 @@ from lab.report.page import Page
 from lab.studies.bench.accuracy.settled import settled_scene
 from lab.studies.bench.speed.workers import in_turn, worked
 from solvers.grains.lists.skin import TOGETHER
+from solvers.machine.quantity import PLANE
 from solvers.simulation import Simulation
 
 BY_SPEED = 0.0  # no fixed skin but the default one
@@ -19,7 +20,7 @@ TURNS, STEPS = 9, 6000
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     still, swayed = _speeds(0.0), _speeds(0.5)
-    least, most, *_ = TOGETHER
+    least, most, *_ = TOGETHER[PLANE]
     page.section("Skin of the neighbour lists")
     page.say(f"""Grain-steps a second of processor time with a fixed skin, relative to the default, which goes with the
         root of the speed of the fastest grain from {least:g} to {most:g} mean diameters: medians of the ratios of
