@@ -69,6 +69,9 @@ def steerable(loaded: LoadedPreset) -> LoadedPreset:
     Raises LabError for grains in a floating hull, whose tank must be at rest.
     """
     preset = loaded.resolved
+    if preset.tank.solid is not None:
+        key = "tank.along" if preset.tank.along else "tank.turned"
+        raise LabError(f"{key}: a scene in space cannot be steered yet; `cargolab run` films it.")
     if preset.grains is not None and preset.grains.room is not None:
         raise LabError("grains.room: the tank of a hull with grains cannot be steered; `cargolab run` films it.")
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))

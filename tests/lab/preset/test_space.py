@@ -1,0 +1,80 @@
+"""Presets in space: what they refuse, what they record, and how many grains a depth takes."""
+
+import numpy as np
+import pytest
+
+from lab.assembly.grains import grain_count
+from lab.assembly.scene import build
+from lab.base.errors import LabError
+from lab.preset.find import load
+from lab.preset.kept.recorded import content
+from lab.preset.recorded import to_table
+from lab.recording.layout import tables_of
+from lab.view.live import steerable
+
+WATER = {"grains": False, "material": False, "water": {"depth": "20 mm", "spacing": "5 mm"}}
+CHICKPEAS = "space/tilting-box-quick"
+
+
+@pytest.mark.parametrize(
+    ("preset", "changes", "said"),
+    [
+        (CHICKPEAS, WATER, "water: water is computed in the plane alone; leave this out, or tank.along"),
+        (CHICKPEAS, {"tank.roughness": "5 mm"}, "tank.roughness: this is of the plane alone"),
+        (CHICKPEAS, {"tank.thickness": "5 mm"}, "tank.thickness: this is of the plane alone"),
+        (CHICKPEAS, {"grains.surface": "undisturbed"}, "grains.surface: a bed is levelled in the plane alone"),
+        (CHICKPEAS, {"run.integrator": "gear"}, "run.integrator: in space it is verlet or symplectic-euler"),
+        (CHICKPEAS, {"tank.along": "15 mm"}, "tank.along: must be more than one grain, 16 mm each"),
+        (CHICKPEAS, {"tank.periodic": True, "tank.along": "70 mm"}, "tank.along: must be more than 5 of the largest"),
+        (CHICKPEAS, {"tank.turned": True}, "tank.turned: a tank is either turned about its axis or drawn out"),
+        ("tilting/quick", {"tank.periodic": True}, "tank.periodic: goes with the length of a slice; give tank.along"),
+        ("tilting/quick", {"contact.twisting": "marshall"}, "contact.twisting: grains twist in space alone"),
+        ("space/silo", {"parts.left": False}, "parts.right.points: in a tank that is turned each part has its like"),
+        ("space/silo", {"parts.gate.move": ["1 mm", "0 mm"]}, "parts.gate: in a tank that is turned a part moves up"),
+        (CHICKPEAS, {"grains.depth": "1 m"}, "grains.depth: 1 m must be less than the tank's height"),
+        ("space/silo", {"grains.count": 900_000}, "grains.count: 900000 grains do not fit into the region"),
+    ],
+)
+def test_what_does_not_go_in_space_is_refused_in_a_sentence(preset, changes, said):
+    """With the key and what to do."""
+    with pytest.raises(LabError) as refusal:
+        grain_count(load(preset, changes).resolved)
+    assert str(refusal.value).startswith(said)
+
+
+def test_a_recording_has_three_axes():
+    """Vectors have three components, rotations three, poses six; a recorded preset says so without the schema."""
+    preset = load(CHICKPEAS).resolved
+    tables = {one.name: one.shape for table in tables_of(preset, False).values() for one in table}
+    assert tables["position"] == tables["velocity"] == tables["spin"] == tables["angle"] == (3,)
+    assert tables["pose"] == tables["wall_force"] == (6,)
+    assert tables["centre_of_mass"] == (3,)
+    assert content(to_table(preset)).axes == 3
+    assert content(to_table(load("tilting/quick").resolved)).axes == 2
+
+
+@pytest.mark.parametrize("preset", ["space/tilting-box-quick", "space/slice-quick", "space/silo-quick"])
+def test_a_bed_starts_within_its_tank_without_overlaps(preset):
+    """And a depth takes the grains that fill its volume to 57 %."""
+    from scipy.spatial import cKDTree
+
+    loaded = load(preset).resolved
+    scene, position = build(loaded)
+    place, radius = position[0], scene.grains.radius[0]
+    if scene.solid.period:
+        place = np.concatenate([place, np.add(place, [0.0, 0.0, scene.solid.period])])
+    pairs = cKDTree(place).query_pairs(2.0 * radius.max(), output_type="ndarray")
+    apart = np.linalg.norm(place[pairs[:, 0]] - place[pairs[:, 1]], axis=1)
+    assert not np.any(apart < radius[pairs % len(radius)].sum(axis=1) * (1.0 - 1e-9))
+    section = scene.solid.section(position[0])
+    assert np.all(section[:, 1] > radius * (1.0 - 1e-9))
+    assert np.all(np.abs(section[:, 0]) < scene.outline[:, 0].max())
+    if loaded.grains.depth:
+        volume = loaded.tank.along * 0.3 * loaded.grains.depth
+        share = np.pi / 6.0 * loaded.sizes.mean_cube * len(radius) / volume
+        assert share == pytest.approx(0.57, rel=1e-3)
+
+
+def test_a_scene_in_space_is_not_steered():
+    with pytest.raises(LabError, match=r"^tank.turned: a scene in space cannot be steered yet"):
+        steerable(load("space/silo"))
