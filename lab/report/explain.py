@@ -23,21 +23,21 @@ from solvers.time.schedules import choose_schedule, units_a_world
 
 # Grain-steps a second of one core on settled beds: between a Xeon of 2.5 GHz (15e6) and newer ones (37e6 and more;
 # README, "Speed"). It is used for the estimate of the run time only.
-GRAIN_STEPS_PER_CORE = 20e6
+GRAIN_STEPS_PER_CORE = {2: 20e6, 3: 6e6}  # by the scene's axes
 OUTLINES_PER_CORE = {"continuous": 3e6, "nodes": 3e6, "area": 3e6}  # of irregular grains
 DROP_STEPS_PER_CORE = 1.1e6  # particle-steps of water a second of one core
 # Other parts of a run, in seconds of CPU time of one core (AMD EPYC, Zen 5): to start Python, its libraries and Taichi,
 # to compile the kernels when they are new, and in addition those of a ship
 STARTING = 2.0
 COMPILING = {"both": 90.0, "water": 25.0, "discs": 2.0, "continuous": 8.0, "nodes": 6.0, "area": 4.5}
-COMPILING_SHIP = 3.0
+COMPILING_SHIP, COMPILING_SPHERES = 3.0, 23.0
 STEP = 0.07e-6  # of a world, without its grains
 SAMPLE = 0.25e-3  # to stop and observe all worlds
 # For each computation of the water's forces on a ship: at least, for each pair of states of its memory, for each wave
 LOOK, LOOK_PAIR, LOOK_WAVE = 0.4e-6, 1.6e-9, 0.07e-6
 FROZEN = 0.37e-3  # for each interval of the ship with her cargo frozen
 LARGE = 500.0  # MiB, of a recording
-REPORTING, PICTURE = 2.5, 0.026  # measures and figures; a picture and its place in the video
+REPORTING, PICTURE = 2.5, {2: 0.026, 3: 0.07}  # measures and figures; a picture and its place in the video
 
 PRECISIONS = {
     "f64": "64-bit floats",
@@ -226,7 +226,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
         ),
         *([("steps", f"{steps:.3g}")] if not preset.grains else []),
         ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB{_each(simulation.arrays.bytes, count, what)}"),
-        ("recording", _size(frames * worlds * count * 24 / 2**20)),
+        ("recording", _size(frames * worlds * count * 24 * (scene.axes - 1) / 2**20)),
         ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
         *([("", settling)] if preset.run.settles and preset.grains else []),
     ]
@@ -247,14 +247,15 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     """Seconds that a run takes, by its parts, without settling; kernels are compiled anew and all pictures painted."""
     of_grains = scene.grains.shapes.contact if scene.grains and scene.grains.shapes else "discs"
     rule = of_grains if not scene.fluid else "both" if scene.grains else "water"
+    more = COMPILING_SHIP * bool(preset.ship) + COMPILING_SPHERES * (scene.axes > 2)
     duration, record = preset.duration, preset.record
     found = {
-        "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if preset.ship else 0.0),
+        "to start and compile": STARTING + COMPILING[rule] + more,
         "of steps": _stepping(duration, preset, scene) + duration * record.series_rate * SAMPLE,
     }
     if preset.ship:
         found["of her hull and water"] = _floating(preset, simulation)
-    return found | {"of figures": REPORTING, "of pictures": duration * record.picture_rate * PICTURE}
+    return found | {"of figures": REPORTING, "of pictures": duration * record.picture_rate * PICTURE[scene.axes]}
 
 
 def _steps(scene, duration: float) -> float:
@@ -269,7 +270,9 @@ def _stepping(duration: float, preset, scene) -> float:
     a_step = STEP
     if scene.grains:
         shapes = scene.grains.shapes
-        a_step += scene.grains.count / (OUTLINES_PER_CORE[shapes.contact] if shapes else GRAIN_STEPS_PER_CORE)
+        a_step += scene.grains.count / (
+            OUTLINES_PER_CORE[shapes.contact] if shapes else GRAIN_STEPS_PER_CORE[scene.axes]
+        )
     if scene.fluid:
         a_step += scene.fluid.count / scene.fluid.substeps / DROP_STEPS_PER_CORE
     return rounds * _steps(scene, duration) * a_step
