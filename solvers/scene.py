@@ -105,8 +105,8 @@ class Scene:
 
     @property
     def is_long(self) -> bool:
-        """Whether the kernel of a step is long: that of grains in a floating hull, or of water that enters a ship."""
-        return bool(self.hold or (self.fluid and self.fluid.inlets))
+        """Whether the kernel of a step is long: of grains in a floating hull, or of particles that enter a ship."""
+        return bool(self.hold or (self.flows and self.fluid.inlets))
 
     @property
     def flows(self) -> bool:

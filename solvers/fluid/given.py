@@ -208,3 +208,9 @@ class Fluid(Given):
     def fills(self, tanks: int) -> tuple[int, ...]:
         """How many particles are in each of so many tanks."""
         return self.in_tanks or (self.count, *[0] * (tanks - 1))
+
+    def areas(self, tanks: int) -> np.ndarray:
+        """Area (m²) of the fluid that is in each of so many tanks at the start, (tanks,)."""
+        fills, waiting = self.fills(tanks), self.waiting or (0,) * tanks
+        rows = zip(np.cumsum(fills), fills, waiting, strict=True)
+        return np.array([self.particles["volume"][0, end - fill : end - wait].sum() for end, fill, wait in rows])

@@ -1,25 +1,20 @@
-"""Water in a ship's tanks as a rigid weight or as masses on springs, with the interface of water as particles."""
-
-from typing import ClassVar
+"""Water in a ship's tanks as a rigid weight or as masses on springs."""
 
 import numpy as np
 import taichi as ti
 
-from solvers.fluid import quantities
+from solvers.liquid.level import LevelMatter
+from solvers.liquid.liquid import Liquid
 from solvers.liquid.modes import Modes, modes_of
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axis
-from solvers.machine.units import Units
-from solvers.motion.carrier import per_slab
-from solvers.ship.body import Body, frozen
 from solvers.tank.context import Context
-from solvers.tank.matter import Matter
 
 MASS, CENTRE_Y, CENTRE_Z, TURNING = range(4)  # columns of the table of tanks
 
 
 @ti.data_oriented
-class LiquidMatter(Matter):
+class LiquidMatter(Liquid):
     """The liquid of each tank: a rigid body, and masses m_n that slide along the floor on springs.
 
     With s the way of a mass in the tank, at (y, z) from the tank's origin and with b the body force per mass there,
@@ -32,30 +27,19 @@ class LiquidMatter(Matter):
     Limits: see `ship.potential.springs`; a displaced mass does not feel the tank accelerate upwards (second order).
     """
 
-    name = "water"
-    of_contacts: ClassVar = ()
-
     def __init__(self, scene, context: Context):
-        self.scene, self.water = scene, scene.fluid.water
-        arrays, worlds = context.arrays, context.worlds
-        self.carrier, self.exact = context.carrier, arrays.exact
-        self.units = Units(worlds, 1, 1, 1)
-        self.load = context.load(arrays.under("water"), self.units)
-        self.load.add_mass(arrays.under("water"))
-        self.thickness = scene.tanks[0].thickness
+        super().__init__(scene, context)
         self.modes: list[Modes] = modes_of(scene)
         self.tanks, self.swings = len(self.modes), max(len(one.mass) for one in self.modes)
-        own = arrays.under("liquid")
+        own = context.arrays.under("liquid")
         rigid = np.array([[one.body.mass, *one.body.centre, one.body.inertia] for one in self.modes])
         self.rigid = own.holding("rigid", self.thickness * rigid, "tank number", own.exact)
         self.piece = own.holding("piece", np.array([one.tank for one in self.modes]), "tank", ti.i32)
         rows = np.array([self._padded(one) for one in self.modes])
         self.table = own.holding("table", rows, "tank mode number", own.exact)
-        each = Axis("world", worlds), Axis("tank", self.tanks), Axis("mode", max(1, self.swings))
+        each = Axis("world", context.worlds), Axis("tank", self.tanks), Axis("mode", max(1, self.swings))
         self.way, self.speed_of = own.reals(each, "way", "speed", kind=own.exact)
         (self.rise,) = own.reals(each, "rise", kind=own.exact)
-        self.pull = own.reals(each[:1], "pull_y", "pull_z", kind=own.exact, kept=False)  # gravity, in the tank's axes
-        # Of whole worlds: a band of one, cut for the grains beside it, has no liquid of its own.
         self.before = (Phase(self.push),)
         self.after = (Phase(self.swing),)
 
@@ -66,11 +50,6 @@ class LiquidMatter(Matter):
         for k, mass in enumerate(one.mass):
             rows[k] = self.thickness * mass, one.middle, one.height[k], one.frequency[k], one.damping
         return rows
-
-    @property
-    def extent(self) -> float:
-        """How far (m) from the tank's origin a particle may be."""
-        return self.scene.span
 
     @ti.func
     def push(self, u, t, kick, dt):
@@ -97,10 +76,7 @@ class LiquidMatter(Matter):
                 across -= m
                 slant += m * high
                 turning -= m * high * high
-            none = 0.0 * mass
-            entries = ti.Vector([across, none, slant, none, mass, mass * y, slant, mass * y, turning])
-            for n in ti.static(range(self.load.entries)):
-                self.load.added_mass[u, self.piece[k], n] = entries[n]
+            self.add_mass(u, self.piece[k], ti.Vector([across, mass, slant, mass * y, turning]))
             self.load.book(u, self.piece[k], ti.Vector([force_y, force_z, moment]), dt)
 
     @ti.func
@@ -108,9 +84,7 @@ class LiquidMatter(Matter):
         """Move the masses, and book what the tank's acceleration adds to the load; returns that all is well."""
         w = self.units.world(u)
         b, rate, up = ti.cast(frame[0], self.exact), ti.cast(frame[2], self.exact), ti.cast(frame[3], self.exact)
-        gains = ti.Vector([self.pull[0][w] - b, self.pull[1][w] - ti.cast(frame[1], self.exact), up])
-        for piece in range(self.load.pieces):
-            self.load.book_reaction(u, piece, gains, dt)
+        self.react(u, frame, dt)
         during, whole = ti.cast(kick, self.exact), ti.cast(dt, self.exact)
         sound = True
         for k in range(self.tanks):
@@ -126,20 +100,9 @@ class LiquidMatter(Matter):
                 sound = sound and ti.abs(new) < self.water.sound_speed
         return sound
 
-    def as_rigid(self) -> list[Body]:
-        """The water of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
-        particles = self.scene.fluid.particles
-        mass = self.water.density * per_slab(self.scene) * particles["volume"]
-        return [frozen(*p["position"].T, m, p["volume"]) for p, m in zip(particles, mass, strict=True)]
-
     def observe(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of water at `time` (s): its centre; others that particles have are zero."""
-        worlds, sizes = self.units.worlds, {"level": len(self.water.levels), "edge": len(self.water.edges)}
-        sizes |= {"gauge": len(self.water.gauges), "part": 0}
-        rows = {}
-        for one in quantities.SERIES:
-            owner = (sizes[one.per],) if one.per in sizes else ()
-            rows[one.name] = np.zeros((worlds, *owner, *one.shape))
+        rows = self.unknown()
         way, whole = self.way.to_numpy().astype(float), sum(one.water.mass for one in self.modes)
         for k, one in enumerate(self.modes):
             rows["water_centre"] += one.water.mass / whole * np.array(one.water.centre)
@@ -171,8 +134,8 @@ class LiquidMatter(Matter):
         return {"water_position": place, "water_velocity": velocity, "water_pressure": still}
 
 
-def make_liquid(scene, context: Context) -> LiquidMatter | None:
+def make_liquid(scene, context: Context) -> Liquid | None:
     """The water of a scene (`solvers.scene.Scene`) without particles; None where it has none of that kind."""
     if scene.fluid is None or scene.fluid.moved:
         return None
-    return LiquidMatter(scene, context)
+    return LevelMatter(scene, context) if scene.fluid.water.model == "level" else LiquidMatter(scene, context)

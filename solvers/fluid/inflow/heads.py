@@ -12,76 +12,33 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.inflow.inlet import Inlet
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, Scope
 from solvers.motion.frame import turned
 
-DRY = -1e6  # m, the level of a room without water
-HALVINGS = 48  # of the room's height, for its level
 HEIGHTS, SEAS, ROOM = (0, 1), (2, 3), 4  # columns of `seen`: of both ends, and the room's level
 
 
 @ti.data_oriented
 class Heads:
-    """The levels on both sides of each opening, in W worlds: `seen` (W, K, 5) m, as they were last looked at.
+    """The levels on both sides of each opening, in W worlds: `seen` (W, K, 5) m, as they were last looked at."""
 
-    `corners` (tanks, k, 2) m are those of the tanks, padded; `water` (tanks,) m² what is in each at the start without
-    being counted by particles that enter.
-    """
-
-    def __init__(self, arrays: State, inlets: Sequence[Inlet], outlines: Sequence[np.ndarray], carrier, worlds: int):
-        self.exact, self.carrier, self.count = arrays.exact, carrier, len(inlets)
-        own, most = arrays.under("water.inflow"), max(map(len, outlines))
-        closed = [np.concatenate([one, np.repeat(one[:1], most + 1 - len(one), axis=0)]) for one in outlines]
-        self.sides = most
-        self.corners = own.holding("corners", np.array(closed), "room corner direction", own.exact)
+    def __init__(self, own: Scope, inlets: Sequence[Inlet], carrier, worlds: int):
+        self.exact, self.carrier, self.count = own.exact, carrier, len(inlets)
         self.ends = own.holding("ends", np.array([np.ravel(one.ends) for one in inlets]), "inlet number", own.exact)
         self.room = own.holding("room", np.array([one.room for one in inlets]), "inlet", ti.i32)
+        factor = [one.discharge * one.share * one.width for one in inlets]
+        self.factor = own.holding("factor", np.array(factor), "inlet", own.exact)  # of ∫ √(2 g Δh) ds, to m² a second
         each = Axis("world", worlds), Axis("inlet", self.count), Axis("number", 5)
         (self.seen,) = own.reals(each, "seen", kind=own.exact)
 
     @ti.func
-    def look(self, w, k, pose, t, area):
-        """Note the heights of an opening's ends and the levels there, of the sea at t (s) and of a room with `area`."""
+    def look(self, w, k, pose, t, level):
+        """Note the heights of an opening's ends and the levels there: the sea's at t (s), the room's `level` (m)."""
         for end in ti.static(range(2)):
             place = turned(self.ends[k, 2 * end], self.ends[k, 2 * end + 1], pose[2])
             self.seen[w, k, end] = pose[1] + place[1]
             self.seen[w, k, 2 + end] = self.carrier.hulls.sea(w, pose[0] + place[0], t)[0]
-        self.seen[w, k, ROOM] = self.level(self.room[k], pose, area)
-
-    @ti.func
-    def level(self, room, pose, area):
-        """The height (m) of a level surface over an area (m²) of water in a room at a pose of the tanks."""
-        low, high = ti.cast(1e9, self.exact), ti.cast(-1e9, self.exact)
-        for corner in range(self.sides):
-            z = pose[1] + turned(self.corners[room, corner, 0], self.corners[room, corner, 1], pose[2])[1]
-            low, high = ti.min(low, z), ti.max(high, z)
-        found = ti.cast(DRY, self.exact)
-        if area > 0.0:
-            for _ in range(HALVINGS):
-                found = 0.5 * (low + high)
-                if self.area_below(room, pose, found) < area:
-                    low = found
-                else:
-                    high = found
-        return found
-
-    @ti.func
-    def area_below(self, room, pose, level):
-        """Area (m²) of a room below a level (m), along its immersed edges, as of hulls (`solvers.motion.buoyancy`)."""
-        area = ti.cast(0.0, self.exact)
-        for side in range(self.sides):
-            one = turned(self.corners[room, side, 0], self.corners[room, side, 1], pose[2])
-            two = turned(self.corners[room, side + 1, 0], self.corners[room, side + 1, 1], pose[2])
-            before, after = level - pose[1] - one[1], level - pose[1] - two[1]
-            y0, y1 = one[0], two[0]
-            if (before > 0.0) != (after > 0.0):
-                crossing = y0 + before / (before - after) * (y1 - y0)
-                if before > 0.0:
-                    y1 = crossing
-                else:
-                    y0 = crossing
-            area += 0.5 * (y1 - y0) * (ti.max(before, 0.0) + ti.max(after, 0.0))
-        return area
+        self.seen[w, k, ROOM] = level
 
     @ti.func
     def head(self, w, k, s):
@@ -89,6 +46,14 @@ class Heads:
         z = self.seen[w, k, 0] + s * (self.seen[w, k, 1] - self.seen[w, k, 0])
         sea = self.seen[w, k, 2] + s * (self.seen[w, k, 3] - self.seen[w, k, 2])
         return ti.max(sea, z) - ti.max(self.seen[w, k, ROOM], z)
+
+    @ti.func
+    def flow(self, w, k):
+        """What flows in by an opening less what flows out by it, m²/s: per metre of the room's length."""
+        found = ti.cast(0.0, self.exact)
+        for way in range(2):  # in, and out
+            found += (1 - 2 * way) * self.through(w, k, ti.cast(1.0, self.exact), 1 - 2 * way)
+        return self.factor[k] * ti.sqrt(2.0 * self.carrier.gravity[0]) * found
 
     @ti.func
     def through(self, w, k, until, way):

@@ -7,6 +7,7 @@ import taichi as ti
 
 from solvers.fluid.inflow.heads import Heads
 from solvers.fluid.inflow.places import Places
+from solvers.fluid.inflow.rooms import Rooms
 from solvers.fluid.lists.neighbours import NEVER, FluidContext
 from solvers.fluid.state import FAR, UNUSED
 from solvers.fluid.state import ROOM as USUAL
@@ -46,12 +47,11 @@ class Inflow:
             raise Unavailable('inflow: is computed world by world; set run.arch = "cpu" and run.schedule = "auto".')
         self.count, worlds, exact = len(fluid.inlets), context.particles.worlds, arrays.exact
         outlines = [tank.outline for tank in tanks]
-        self.heads = Heads(arrays, fluid.inlets, outlines, carrier, worlds)
         own = arrays.under("water.inflow")
-        self.places = Places(arrays, fluid.inlets, outlines, context, self.heads)
+        self.rooms = Rooms(own, outlines)
+        self.heads = Heads(own, fluid.inlets, carrier, worlds)
+        self.places = Places(arrays, fluid.inlets, outlines, context, self.rooms, self.heads)
         self.exact, self.volume = exact, fluid.water.spacing**2  # m², of a particle
-        factor = [one.discharge * one.share * one.width for one in fluid.inlets]
-        self.factor = own.holding("factor", np.array(factor), "inlet", exact)  # of ∫ √(2 g Δh) ds, to m² a second
         share = [one.along / scene.vessels[0].length for one in fluid.inlets]
         self.share = own.holding("share", np.array(share), "inlet", exact)
         self.lengths = np.array([one.along for one in fluid.inlets])
@@ -59,7 +59,7 @@ class Inflow:
         self.first = own.holding("first", np.array([0, *accumulate(self.fills)][:-1]), "room", ti.i32)
         self.waited = own.holding("waited", self.waiting, "room", ti.i32)
         self.most = own.holding("most", self.fills, "room", ti.i32)
-        self.still = own.holding("still", _areas(fluid), "room", exact)  # m², that starts in each tank
+        self.still = own.holding("still", fluid.areas(len(tanks)), "room", exact)  # m², that starts in each tank
         world, inlet, room = Axis("world", worlds), Axis("inlet", self.count), Axis("room", len(tanks))
         self.due, self.rate = own.reals((world, inlet), "due", "rate", kind=exact)
         (self.entered,) = own.integers((world, inlet), "entered")
@@ -95,18 +95,16 @@ class Inflow:
         """Sum up the flow of a step of dt (s) that ends now; lists are rebuilt where a particle is due."""
         self.clock[w] = self.clock[w] + ti.cast(dt, self.exact)
         pose, beds_settle = self.carrier.kinematics(w, self.clock[w]), self.clock[w] < 0.0
-        speed, asks = ti.sqrt(2.0 * self.carrier.gravity[0]), 0
+        asks = 0
         for k in range(self.count):
             room = self.heads.room[k]
-            self.heads.look(w, k, pose, self.clock[w], self.area(w, room))
-            rate = ti.cast(0.0, self.exact)
-            for way in range(2):  # in, and out
-                rate += (1 - 2 * way) * self.heads.through(w, k, ti.cast(1.0, self.exact), 1 - 2 * way)
+            self.heads.look(w, k, pose, self.clock[w], self.rooms.level(room, pose, self.area(w, room)))
+            rate = self.heads.flow(w, k)
             if beds_settle:
                 rate = 0.0
             if (self.left[w, room] == 0 and rate > 0.0) or (self.left[w, room] == self.most[room] and rate < 0.0):
                 rate = 0.0  # the room is full, or empty
-            self.rate[w, k] = self.factor[k] * speed * rate
+            self.rate[w, k] = rate
             self.due[w, k] = self.due[w, k] + self.rate[w, k] * ti.cast(dt, self.exact) / self.cell()
             if ti.abs(self.due[w, k]) >= 1.0:
                 asks = 1
@@ -217,10 +215,3 @@ class Inflow:
                 p.place[a][b, lane], p.velocity[a][b, lane] = ti.cast(FAR, p.where), ti.cast(0.0, p.real)
             p.deviation[b, lane] = ti.cast(0.0, p.real)
         return goes
-
-
-def _areas(fluid) -> np.ndarray:
-    """Area (m²) of the water that is in each tank at the start."""
-    ends, volume = np.cumsum([0, *fluid.fills(len(fluid.waiting))]), fluid.particles["volume"][0]
-    rows = zip(ends[:-1], ends[1:], fluid.waiting, strict=True)
-    return np.array([float(volume[begin : end - wait].sum()) for begin, end, wait in rows])

@@ -7,6 +7,7 @@ import taichi as ti
 
 from solvers.fluid.inflow.heads import ROOM, Heads
 from solvers.fluid.inflow.inlet import Inlet, mouth
+from solvers.fluid.inflow.rooms import Rooms
 from solvers.fluid.lists.neighbours import FluidContext
 from solvers.fluid.state import SPRAY, UNUSED
 from solvers.machine.state import Axis, State
@@ -31,10 +32,11 @@ class Places:
         inlets: Sequence[Inlet],
         outlines: Sequence[np.ndarray],
         context: FluidContext,
+        rooms: Rooms,
         heads: Heads,
     ):
         self.particles, self.order, self.constants = context.particles, context.lists.order, context.constants
-        self.heads, self.carrier, self.exact = heads, heads.carrier, arrays.exact
+        self.rooms, self.heads, self.carrier, self.exact = rooms, heads, heads.carrier, arrays.exact
         own, world = arrays.under("water.inflow"), Axis("world", context.particles.worlds)
         mouths = [mouth(one, outlines[one.room]) for one in inlets]
         self.mouth = own.holding("mouth", np.array([ends.ravel() for ends, _ in mouths]), "inlet number", own.exact)
@@ -94,8 +96,8 @@ class Places:
         p, room, near = self.particles, self.heads.room[k], NEAR * self.spacing()
         across, up = turned(1.0, 0.0, 0.0 - roll), turned(0.0, 1.0, 0.0 - roll)
         low, high = ti.cast(1e6, self.exact), ti.cast(-1e6, self.exact)
-        for corner in range(self.heads.sides):
-            x = self.heads.corners[room, corner, 0] * across[0] + self.heads.corners[room, corner, 1] * across[1]
+        for corner in range(self.rooms.sides):
+            x = self.rooms.corners[room, corner, 0] * across[0] + self.rooms.corners[room, corner, 1] * across[1]
             low, high = ti.min(low, x), ti.max(high, x)
         at, top, found = low + self.next(w, k) * (high - low), ti.cast(-1e6, self.exact), -1
         for slot in range(self.first_slot(w), self.end_slot(w, new)):
@@ -154,9 +156,9 @@ class Places:
     def is_within(self, room, y, z):
         """Whether a place (m) is in a room, half a spacing from its walls."""
         inside, least = False, 0.49 * self.spacing()
-        for side in range(self.heads.sides):
-            y0, z0 = self.heads.corners[room, side, 0], self.heads.corners[room, side, 1]
-            y1, z1 = self.heads.corners[room, side + 1, 0], self.heads.corners[room, side + 1, 1]
+        for side in range(self.rooms.sides):
+            y0, z0 = self.rooms.corners[room, side, 0], self.rooms.corners[room, side, 1]
+            y1, z1 = self.rooms.corners[room, side + 1, 0], self.rooms.corners[room, side + 1, 1]
             if (z0 > z) != (z1 > z):  # noqa: SIM102 (no division by zero)
                 if y < y0 + (z - z0) / (z1 - z0) * (y1 - y0):
                     inside = not inside

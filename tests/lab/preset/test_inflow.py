@@ -23,7 +23,25 @@ REFUSED = {
     'inflow.hatch.room: there is no tank "hold"; take tank or room': {"inflow.hatch.room": "hold"},
     "inflow.hatch.room: this hold has grains": {"inflow.hatch.room": "tank"},
     "inflow.hatch.length: it is longer than the room, 500 mm": {"inflow.hatch.length": "0.6 m"},
-    "inflow: water enters as particles": {"water.model": "frozen"},
+    'inflow: "frozen" water keeps its volume; take water.model = "sph", particles, or "level"': {
+        "water.model": "frozen"
+    },
+    'gauges: water.model = "level" has no pressures': {
+        "water.model": "level",
+        "gauges": {"side": {"kind": "level", "y": "0 mm"}},
+    },
+    'parts.wall: water.model = "level" goes round no parts': {
+        "water.model": "level",
+        "parts.wall": {"points": [["0 mm", "20 mm"], ["0 mm", "60 mm"]], "tank": "room"},
+    },
+    'water.swing_damping: has no meaning for water.model = "level"': {
+        "water.model": "level",
+        "water.swing_damping": 0.1,
+    },
+    'water.added_mass: has no meaning for water.model = "level"': {
+        "water.model": "level",
+        "water.added_mass": "layer",
+    },
     "inflow: goes with water, and there is none": {"water": False},
     "inflow.hatch.discharge": {"inflow.hatch.discharge": 0.0},
 }
@@ -53,6 +71,15 @@ def test_some_water_may_be_in_the_room():
     assert pytest.approx(float(fluid.particles["volume"][0][fluid.present].sum()), rel=1e-9) == 0.02 * 0.32
     whole = float(fluid.particles["volume"][0].sum())
     assert whole == pytest.approx(0.115 * 0.32, abs=fluid.water.spacing**2)
+
+
+def test_level_water_has_a_mark_for_each_place_and_the_volume_of_what_is_there():
+    """Marks are for pictures; what is in the room at first is exact, and a hold of grains has nothing to do with it."""
+    scene, _ = build(load(OPEN, {"water.model": "level", "tanks.room.depth": "20 mm", "run.repeats": 2}).resolved)
+    particles = build(load(OPEN, {"tanks.room.depth": "20 mm", "run.repeats": 2}).resolved)[0].fluid
+    assert scene.fluid.areas(2) == pytest.approx([0.0, 0.02 * 0.32], rel=1e-9)
+    assert scene.fluid.waiting == particles.waiting and scene.fluid.water.density == 1000.0
+    assert scene.fluid.moved == 0 and not scene.is_long
 
 
 def test_its_quantities_are_recorded():

@@ -76,6 +76,8 @@ def _check_company(preset: Whole) -> None:
     if preset.water.model != "sph" and preset.ship is None:
         named = preset.water.model
         raise LabError(f'water.model: "{named}" is for tanks in a ship; add a table [ship], or take "sph".')
+    if preset.water.model == "level":
+        _check_level_water(preset)
     if preset.air is not None and preset.ship is not None:
         raise LabError("air: air in a ship's tanks is not computed yet; leave out [air] or [ship].")
     if preset.ship is not None:
@@ -84,6 +86,20 @@ def _check_company(preset: Whole) -> None:
                 raise LabError(f"water.{name}: a ship starts with level water; give a depth.")
     if preset.run.repeats > 1 and preset.grains is None:
         raise LabError("run.repeats: water starts without chance, so that all repeats would be the same; take one.")
+
+
+def _check_level_water(preset: Whole) -> None:
+    """Raise LabError for what level water knows nothing of."""
+    if preset.gauges:
+        raise LabError('gauges: water.model = "level" has no pressures; leave them out, or take "sph".')
+    names = ["tank", *preset.tanks]
+    wet = {names[pool.number] for pool in preset.pools}
+    for name, part in preset.parts.items():
+        if (part.tank or "tank") in wet:
+            raise LabError(f'parts.{name}: water.model = "level" goes round no parts; leave it out, or take "sph".')
+    for name, value in (("swing_damping", preset.water.swing_damping), ("added_mass", preset.water.added_mass)):
+        if value != getattr(Water, name):
+            raise LabError(f'water.{name}: has no meaning for water.model = "level"; leave it out.')
 
 
 def given_of(water: Water) -> dict[str, object]:

@@ -16,6 +16,7 @@ from solvers.fluid.inflow import inlet as solved
 from solvers.machine.marks import Doc, Interval, Unit
 
 FIRST = "tank"  # the name of the first tank
+ENTERS = "sph", "level"  # models of water that may enter or leave
 
 Ends = Annotated[tuple[tuple[float, float], ...], Unit("m")]
 Length = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
@@ -74,8 +75,10 @@ def check_inflow(preset: Tanked) -> None:
         return
     if preset.ship is None:
         raise LabError("inflow: openings are those of a ship; add a table [ship], or leave them out.")
-    if preset.water is not None and preset.water.model != "sph":
-        raise LabError(f'inflow: water enters as particles; take water.model = "sph" for "{preset.water.model}".')
+    if preset.water is not None and preset.water.model not in ENTERS:
+        raise LabError(
+            f'inflow: "{preset.water.model}" water keeps its volume; take water.model = "sph", particles, or "level".'
+        )
     for name, inlet in preset.inflow.items():
         for key, fault in _faults(preset, inlet):
             raise LabError(f"inflow.{name}.{key}: {fault}.")

@@ -37,8 +37,11 @@ class Water:
         Doc("Depth of the water over the tank's lowest point; or give `region`. Further tanks have their own."),
     ] = None
     model: Annotated[
-        Literal["sph", "linear", "frozen"],
-        Doc("How water moves in a ship: as particles, by linear potential theory in box-shaped tanks, or not at all."),
+        Literal["sph", "linear", "frozen", "level"],
+        Doc(
+            "How water moves in a ship: as particles, by linear potential theory in box-shaped tanks, not at all, or "
+            "as a weight whose surface is level at any heel."
+        ),
     ] = "sph"
     swing_damping: Annotated[
         float, Interval(ge=0, le=1), Doc('Damping of each wave, a fraction of the critical, for model = "linear".')
