@@ -1,7 +1,7 @@
 """Water that has entered a ship through openings in her hull.
 
 entered_NAME: the volume that has entered through each opening by the end of the run, less what has left by it.
-Error: one particle of water, over the length of the room.
+Error: one particle of water, over the length of the room; none for water that stands level, whose volume is exact.
 """
 
 from collections.abc import Mapping
@@ -25,11 +25,14 @@ def applies(recording: Recording) -> bool:
 def measure(recording: Recording) -> dict[str, Value]:
     """entered_NAME (l)."""
     last, preset = 1e3 * recording.series["inflow_volume"][-1], recording.preset
-    errors = [1e3 * inlet.along * preset.liquid.spacing**2 for inlet in inlets_of(preset)]
-    return {
-        f"entered_{name}": over_worlds(last[:, k], "l", uncertainties=np.full(len(last), errors[k]), kind="resolution")
-        for k, name in enumerate(recording.names["inlet"])
-    }
+    found = {}
+    for k, (name, inlet) in enumerate(zip(recording.names["inlet"], inlets_of(preset), strict=True)):
+        error = {}
+        if preset.water.model == "sph":
+            of_one = 1e3 * inlet.along * preset.liquid.spacing**2
+            error = {"uncertainties": np.full(len(last), of_one), "kind": "resolution"}
+        found[f"entered_{name}"] = over_worlds(last[:, k], "l", **error)
+    return found
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

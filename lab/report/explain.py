@@ -274,7 +274,7 @@ def _stepping(duration: float, preset, scene) -> float:
             OUTLINES_PER_CORE[shapes.contact] if shapes else GRAIN_STEPS_PER_CORE[scene.axes]
         )
     if scene.fluid:
-        a_step += scene.fluid.count / scene.fluid.substeps / DROP_STEPS_PER_CORE
+        a_step += scene.fluid.moved / scene.fluid.substeps / DROP_STEPS_PER_CORE
     return rounds * _steps(scene, duration) * a_step
 
 

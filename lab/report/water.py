@@ -26,15 +26,23 @@ EVEN = 1e-6  # of the density: water within it is not compressed
 OFF = 0.005  # %: a tank's mass that is off by more is told
 SOFT = 1.5  # times: the air's softness from which it is told
 UNEXPLAINED = 0.05  # of the energy exchanged: more is said
+WITHOUT_PARTICLES = {
+    "linear": "masses on springs by linear potential theory",
+    "frozen": "frozen: it moves as one with the ship",
+    "level": "a weight at its centre, level at any heel",
+}
 Rows = list[tuple[str, str]]
 
 
 def described(preset: Preset, scene: Scene) -> Rows:
     """The water and its gauges, each row a name and a text."""
     (pressure, level, force), water = parted(preset.gauges), scene.fluid.water
+    of_what, sound = "particles", [("sound", _sound(preset, water))]
+    if not scene.fluid.moved:
+        of_what, sound = f"marks ({WITHOUT_PARTICLES[water.model]})", []
     rows = [
-        ("water", f"{scene.particles} particles in each tank, {_size(preset, water)}"),
-        ("sound", _sound(preset, water)),
+        ("water", f"{scene.particles} {of_what} in each tank, {_size(preset, water)}"),
+        *sound,
         *compression(preset, scene),
     ]
     if water.air:
@@ -91,6 +99,8 @@ def _flow(preset: Preset) -> str:
 def models(scene: Scene) -> Rows:
     """What is compiled in for the water, each row a name and a text."""
     water = scene.fluid.water
+    if not scene.fluid.moved:
+        return [("water", WITHOUT_PARTICLES[water.model])]
     strength = "" if water.viscosity in LAMINAR else f", α {water.alpha:g}"
     return [
         ("kernel", f"{water.kernel}, h = {water.smoothing:g} spacings"),
@@ -111,6 +121,8 @@ def surface(air: given.Air) -> str:
 
 def accuracy(preset: Preset) -> Rows:
     """The level of accuracy, the spacing that follows from it unless the preset has its own, and what error that is."""
+    if preset.water.model != "sph":
+        return []
     own = "; the preset's own" if preset.water.spacing != "auto" else ""
     count = layers(preset)
     return [
@@ -133,8 +145,11 @@ def in_tank(recording: Recording) -> Iterator[str]:
     """What a summary says of the water, a line each."""
     preset, water = recording.preset, recording.preset.liquid
     worlds, count = recording.volume.shape
-    yield f"{count_of(worlds, 'tank')} with {count} particles of water, {_size(preset, water)}"
-    yield _sound(preset, water)
+    if water.model == "sph":
+        yield f"{count_of(worlds, 'tank')} with {count} particles of water, {_size(preset, water)}"
+        yield _sound(preset, water)
+    else:
+        yield f"{count_of(worlds, 'tank')} with water, {WITHOUT_PARTICLES[water.model]}; {count} marks in pictures"
     if water.air:
         yield f"over it {recording.air_volume.shape[1]} particles of air, as far apart"
     scene = _scene(preset)

@@ -97,9 +97,9 @@ class Water:
     moves freely in space. `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes,
     "y" or "z", along which space repeats itself with the tank's width or height, so that it has no walls there.
     `start`: the name of how water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides,
-    None: nothing. `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share
-    `swing_damping` of the critical damping. `added_mass`: "layer" or "none", whether a ship has the added mass of the
-    wall particles on her own side. `damping`: the zones that take waves.
+    None: nothing. `model`: "sph", or "linear", "frozen" or "level", for which see `solvers.liquid`: linear waves have
+    the share `swing_damping` of the critical damping. `added_mass`: "layer" or "none", whether a ship has the added
+    mass of the wall particles on her own side. `damping`: the zones that take waves.
     """
 
     spacing: float
@@ -197,7 +197,7 @@ class Fluid(Given):
 
     @property
     def moved(self) -> int:
-        """How many of them are moved one by one: none of a liquid that is frozen, or linear."""
+        """How many of them are moved one by one: none of a liquid that is frozen, linear or level."""
         return self.count if self.water.model == "sph" else 0
 
     @property

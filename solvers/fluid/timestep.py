@@ -26,8 +26,11 @@ SLOW = 1e-9
 def limits_of_water(scene, closing: float = 0.0) -> list[Limit]:
     """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected.
 
-    They do not depend on the speed at which its particles meet."""
+    They do not depend on the speed at which its particles meet. There are none of water that stands level.
+    """
     water = scene.fluid.water
+    if water.model == "level":
+        return []
     length, sound, speed = water.length, water.sound_speed, water_speed(scene)
     bounds = [
         Limit(
@@ -78,7 +81,8 @@ def longest_pace(scene, step: float) -> int:
     if scene.hold:
         longest = min(*(limit.step for limit in limits_of_water(scene)), SHARE_OF_COLLISION * shortest_collision(scene))
         return max(1, int(longest / step))
-    if scene.fluid.water.added_mass == "layer" or scene.vessels[0].handover:
+    water = scene.fluid.water
+    if water.added_mass == "layer" or water.model == "level" or scene.vessels[0].handover:
         return 1
     return max(1, int(min(limit.step for limit in limits_of_water(scene)) / step))
 

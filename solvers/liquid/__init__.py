@@ -1,1 +1,1 @@
-"""Water in a ship's tanks that needs no particles: frozen, or by linear potential theory."""
+"""Water in a ship's tanks that needs no particles: frozen, by linear potential theory, or level at any heel."""

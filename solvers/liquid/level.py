@@ -24,11 +24,12 @@ class LevelMatter(Liquid):
 
         force = ρ V b,   moment = ρ V (y b_z − z b_y),   dV/dt = Σ Q,
 
-    added weight with a horizontal free surface (Dillingham 1981), Q by `Heads`, explicit in time. So the mass takes
-    part in sway, heave and, at its lever, in roll; it has no moment of inertia about its own centre, since a level
-    surface does not turn with the ship. That r moves in the room as she heels has no inertia either: taken along by
-    the level, a thin layer would have a boundless one, that of a mass at its metacentre, ρ V (l²/12d)² for a depth d.
-    What enters has her speed at once. Walls reach round the whole outline, and nothing spills. Nothing flows while beds
+    added weight, lumped at the water's centre (as in Acanfora, Begovic & De Luca 2019, J. Mar. Sci. Eng. 7, 111, whose
+    surface has a slope of its own; here it is horizontal), Q by `Heads`, explicit in time. So the mass takes part in
+    sway, heave and, at its lever, in roll; it has no moment of inertia about its own centre, since a level surface does
+    not turn with the ship. That r moves in the room as she heels has no inertia either (own choice): taken along by the
+    level, a thin layer would have a boundless one, that of a mass at its metacentre, ρ V (l²/12d)² for a depth d. What
+    enters has her speed at once. Walls reach round the whole outline, and nothing spills. Nothing flows while beds
     settle, at times below zero. No energies are known, as of other water without particles.
 
     Limits: for motions slow beside the room's first wave; no sloshing, and no wave runs ahead of the level.

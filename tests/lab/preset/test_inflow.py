@@ -1,12 +1,16 @@
 """Openings of ships in presets: what is refused, and what the solver is told."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from lab.assembly.scene import build
 from lab.base.errors import LabError
+from lab.measures import inflow
 from lab.preset.find import load
 from lab.recording.layout import names_of, tables_of
+from lab.report import water
 
 OPEN = "ship/barge-open-hatch-quick"
 DRY = {"grains": False, "material": False}
@@ -80,6 +84,29 @@ def test_level_water_has_a_mark_for_each_place_and_the_volume_of_what_is_there()
     assert scene.fluid.areas(2) == pytest.approx([0.0, 0.02 * 0.32], rel=1e-9)
     assert scene.fluid.waiting == particles.waiting and scene.fluid.water.density == 1000.0
     assert scene.fluid.moved == 0 and not scene.is_long
+
+
+def test_reports_say_that_level_water_has_no_particles_and_an_exact_volume():
+    """No speed of sound, no layers, no models of particles; what has entered is known without an error."""
+    for model, error in (("level", None), ("sph", 1e3 * 0.5 * 0.005**2)):
+        preset = load(OPEN, {"water.model": model}).resolved
+        scene, names = build(preset)[0], {"inlet": ["hatch"]}
+        told = dict(water.described(preset, scene)) | dict(water.models(scene))
+        assert ("level at any heel" in told["water"]) == (model == "level")
+        assert ("sound" in told, "kernel" in told, bool(water.accuracy(preset))) == (model == "sph",) * 3
+        recording = SimpleNamespace(series={"inflow_volume": np.full((3, 1, 1), 0.0102)}, preset=preset, names=names)
+        found = inflow.measure(recording)["entered_hatch"]
+        assert found.value == pytest.approx(10.2) and found.uncertainty == pytest.approx(error)
+
+
+def test_its_spacing_does_not_change_the_step_of_level_water():
+    """Marks are for pictures: beside grains, and without, the step is that of the grains, or of the ship."""
+    for cargo in ({}, DRY):
+        sizes = ("5 mm", "2.5 mm")
+        steps = [
+            build(load(OPEN, {"water.model": "level", "water.spacing": one, **cargo}).resolved)[0] for one in sizes
+        ]
+        assert steps[0].step == steps[1].step and steps[0].fluid.substeps == 1
 
 
 def test_its_quantities_are_recorded():
