@@ -74,7 +74,7 @@ def _with_level_water(preset: Preset, vessel: Vessel, heels: np.ndarray) -> np.n
     moved, tanks = np.zeros((len(heels), 2)), [preset.tank, *preset.tanks.values()]
     outlines = [np.array(preset.tank.corners), *(outline_of(preset, tank) for tank in preset.tanks.values())]
     try:
-        for pool in preset.pools:
+        for pool in (one for one in preset.pools if one.depth):  # a room may be empty at first
             along = tanks[pool.number].length
             share = along / preset.ship.length if along else 1.0
             hold, area = Section(outlines[pool.number]), moments(below(pool.polygon, pool.level))[0]
