@@ -145,16 +145,19 @@ class LevelMatter(Liquid):
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Places (W, n, 2) of marks that fill the water evenly at `time` (s), which is now; they have no velocities.
 
-        Each stands for the area of a square of a spacing; marks that are not needed have no place (NaN).
+        Each of a room stands for the same area; those that are not needed have no place (NaN).
         """
         self.look(time)
         fluid, spacing = self.scene.fluid, self.water.spacing
         place, ends = np.full((self.units.worlds, fluid.count, 2), np.nan), np.cumsum([0, *self.scene.fills])
         area, level, turn = self.area.to_numpy(), self.level.to_numpy(), self.turn.to_numpy()
         for k, number in enumerate(self.numbers):
-            marks = place[:, ends[number] : ends[number + 1]]
+            own = slice(ends[number], ends[number + 1])
+            if not self.scene.fills[number]:
+                continue  # smaller than a mark
+            marks, of_one = place[:, own], fluid.particles["volume"][0, own].mean()
             for w in range(len(place)):
-                count = min(marks.shape[1], round(float(area[w, k]) / spacing**2))
+                count = min(marks.shape[1], round(area[w, k] / of_one))
                 marks[w, :count] = marks_in(self.outlines[k], turn[w], level[w, k], count, spacing)
         still = np.where(np.isnan(place), np.nan, 0.0)
         return {"water_position": place, "water_velocity": still, "water_pressure": still[..., 0]}

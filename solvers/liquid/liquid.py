@@ -66,8 +66,9 @@ class Liquid(Matter):
     def unknown(self) -> dict[str, np.ndarray]:
         """The quantities of particles of water, all zero."""
         sizes = {"level": len(self.water.levels), "edge": len(self.water.edges), "gauge": len(self.water.gauges)}
+        sizes |= {"part": 0}
         rows = {}
         for one in quantities.SERIES:
-            owner = ((sizes | {"part": 0})[one.per],) if one.per in {*sizes, "part"} else ()
+            owner = (sizes[one.per],) if one.per in sizes else ()
             rows[one.name] = np.zeros((self.units.worlds, *owner, *one.shape))
         return rows

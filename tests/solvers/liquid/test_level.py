@@ -95,7 +95,7 @@ def test_she_moves_as_with_a_point_mass_that_stays_at_the_centroid(heeled):
         wanted = np.array(list(_sailed(mass, heel, len(found) - 30)))
         size = np.ptp(wanted, axis=0)
         assert (size > heel * np.array([0.01, 1e-3, 1.0])).all()
-        assert (np.abs(found[30:, w] - wanted).max(axis=0) < [5e-5 * heel, 5e-5 * heel, 3e-4 * heel]).all()
+        assert (np.abs(found[30:, w] - wanted).max(axis=0) < 2e-5 * size).all()
 
 
 def _sailed(mass: float, heel: float, count: int) -> Iterator[np.ndarray]:
