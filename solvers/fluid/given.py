@@ -210,7 +210,8 @@ class Fluid(Given):
         return self.in_tanks or (self.count, *[0] * (tanks - 1))
 
     def areas(self, tanks: int) -> np.ndarray:
-        """Area (m²) of the fluid that is in each of so many tanks at the start, (tanks,)."""
+        """Area (m²) of the fluid that is in each of so many tanks at the start, (W, tanks)."""
         fills, waiting = self.fills(tanks), self.waiting or (0,) * tanks
         rows = zip(np.cumsum(fills), fills, waiting, strict=True)
-        return np.array([self.particles["volume"][0, end - fill : end - wait].sum() for end, fill, wait in rows])
+        parts = [self.particles["volume"][:, end - fill : end - wait].sum(axis=1) for end, fill, wait in rows]
+        return np.stack(parts, axis=1)

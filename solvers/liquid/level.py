@@ -43,11 +43,12 @@ class LevelMatter(Liquid):
         fluid, tanks, worlds = scene.fluid, scene.tanks, context.worlds
         areas, self.inlets, self.openings = fluid.areas(len(tanks)), fluid.inlets, len(fluid.inlets)
         led = {inlet.room for inlet in fluid.inlets}
-        self.numbers = [number for number in range(len(tanks)) if areas[number] > 0.0 or number in led]
+        self.numbers = [number for number in range(len(tanks)) if areas[:, number].any() or number in led]
         self.outlines = [tanks[number].outline for number in self.numbers]
-        self.start, self.count = areas[self.numbers], len(self.numbers)
+        self.start, self.count = areas[:, self.numbers], len(self.numbers)
         own = context.arrays.under("liquid")
         self.piece = own.holding("piece", np.array(self.numbers), "room", ti.i32)
+        self.dense = own.holding("dense", self.water.density * np.array([1.0, self.thickness]), "number", own.exact)
         self.rooms = Rooms(own, self.outlines)
         world, room = Axis("world", worlds), Axis("room", self.count)
         (self.area,) = own.reals((world, room), "area", kind=own.exact)
@@ -80,7 +81,7 @@ class LevelMatter(Liquid):
         self.pull[0][w], self.pull[1][w] = 0.0 - g * ti.sin(motion[2]), 0.0 - g * ti.cos(motion[2])
         for k in range(self.count):
             y, z = self.y[w, k], self.z[w, k]
-            mass = self.water.density * self.thickness * self.area[w, k]
+            mass = self.dense[1] * self.area[w, k]
             force_y, force_z = mass * (square * y + self.pull[0][w]), mass * (square * z + self.pull[1][w])
             self.add_mass(u, self.piece[k], ti.Vector([mass, mass, 0.0 - mass * z, mass * y, mass * (y * y + z * z)]))
             self.load.book(u, self.piece[k], ti.Vector([force_y, force_z, y * force_z - z * force_y]), dt)
@@ -108,7 +109,7 @@ class LevelMatter(Liquid):
             self.area[w, room] = self.area[w, room] + gain
             self.entered[w, k], self.rate[w, k] = self.entered[w, k] + gain, gain / dt
             aboard += self.share[k] * self.entered[w, k]
-        self.carrier.bear_water(w, self.water.density * aboard, t + dt)
+        self.carrier.bear_water(w, self.dense[0] * aboard, t + dt)
 
     @ti.func
     def follow(self, u, frame, kick, dt):
@@ -137,7 +138,7 @@ class LevelMatter(Liquid):
 
     def place(self, position: np.ndarray | None) -> None:
         """Let the rooms have the water that they have at the start."""
-        self.area.from_numpy(np.tile(self.start, (self.units.worlds, 1)))
+        self.area.from_numpy(self.start)
         for field in (self.entered, self.rate, self.heads.seen) if self.inlets else ():
             field.fill(0.0)
         self.load.forget()
@@ -155,9 +156,9 @@ class LevelMatter(Liquid):
             own = slice(ends[number], ends[number + 1])
             if not self.scene.fills[number]:
                 continue  # smaller than a mark
-            marks, of_one = place[:, own], fluid.particles["volume"][0, own].mean()
+            marks, of_one = place[:, own], fluid.particles["volume"][:, own].mean(axis=1)
             for w in range(len(place)):
-                count = min(marks.shape[1], round(area[w, k] / of_one))
+                count = min(marks.shape[1], round(area[w, k] / of_one[w]))
                 marks[w, :count] = marks_in(self.outlines[k], turn[w], level[w, k], count, spacing)
         still = np.where(np.isnan(place), np.nan, 0.0)
         return {"water_position": place, "water_velocity": still, "water_pressure": still[..., 0]}

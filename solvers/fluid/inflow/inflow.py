@@ -59,7 +59,7 @@ class Inflow:
         self.first = own.holding("first", np.array([0, *accumulate(self.fills)][:-1]), "room", ti.i32)
         self.waited = own.holding("waited", self.waiting, "room", ti.i32)
         self.most = own.holding("most", self.fills, "room", ti.i32)
-        self.still = own.holding("still", fluid.areas(len(tanks)), "room", exact)  # m², that starts in each tank
+        self.still = own.holding("still", fluid.areas(len(tanks)), "world room", exact)  # m², that starts in each tank
         world, inlet, room = Axis("world", worlds), Axis("inlet", self.count), Axis("room", len(tanks))
         self.due, self.rate = own.reals((world, inlet), "due", "rate", kind=exact)
         (self.entered,) = own.integers((world, inlet), "entered")
@@ -121,7 +121,7 @@ class Inflow:
     @ti.func
     def area(self, w, room):
         """Area (m²) of the water in a room."""
-        return self.still[room] + self.cell() * (self.waited[room] - self.left[w, room])
+        return self.still[w, room] + self.cell() * (self.waited[room] - self.left[w, room])
 
     @ti.func
     def aboard(self, w):

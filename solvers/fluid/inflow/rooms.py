@@ -53,7 +53,7 @@ class Rooms:
     @ti.func
     def centre_below(self, room, pose, level):
         """Centroid (m), in the axes of the tanks, of what is below a level (m): exactly, by Green's theorem."""
-        area, across, deep = ti.cast(1e-300, self.exact), ti.cast(0.0, self.exact), ti.cast(0.0, self.exact)
+        area, across, deep = ti.cast(1e-30, self.exact), ti.cast(0.0, self.exact), ti.cast(0.0, self.exact)
         for side in range(self.sides):
             y0, y1, d0, d1 = self.immersed(room, side, pose, level)
             area += 0.5 * (y1 - y0) * (d0 + d1)

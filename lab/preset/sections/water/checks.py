@@ -91,7 +91,7 @@ def _check_company(preset: Whole) -> None:
 def _check_level_water(preset: Whole) -> None:
     """Raise LabError for what level water knows nothing of."""
     if preset.gauges:
-        raise LabError('gauges: water.model = "level" has no pressures; leave them out, or take "sph".')
+        raise LabError('gauges: water.model = "level" knows none; leave them out, or take "sph".')
     names = ["tank", *preset.tanks]
     wet = {names[pool.number] for pool in preset.pools}
     for name, part in preset.parts.items():
