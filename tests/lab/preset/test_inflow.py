@@ -38,6 +38,10 @@ REFUSED = {
         "water.model": "level",
         "parts.wall": {"points": [["0 mm", "20 mm"], ["0 mm", "60 mm"]], "tank": "room"},
     },
+    'ship.coupling: "staggered" is not stable with level water that enters': {
+        "water.model": "level",
+        "ship.coupling": "staggered",
+    },
     'water.swing_damping: has no meaning for water.model = "level"': {
         "water.model": "level",
         "water.swing_damping": 0.1,

@@ -117,7 +117,7 @@ def test_frozen_water_loads_a_tank_as_a_rigid_body():
 
 
 @pytest.mark.slow  # in a whole world the liquid is in `test_water_aboard.py`; that it is not cut is below
-@pytest.mark.parametrize("model", ["frozen", "linear"])
+@pytest.mark.parametrize("model", ["frozen", "linear", "level"])
 def test_liquid_in_a_ship_whose_world_is_cut_into_bands(model):
     """Bands are of the grains beside it: it answers as in a whole world. On two cores such a ship once ended a run."""
     poses = []

@@ -6,6 +6,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import Point, area, stands_out
+from lab.preset.sections.ship import Ship
 from lab.preset.sections.tank import Tank
 from lab.preset.sections.water import liquid
 from lab.preset.sections.water.flow_checks import check_flow, check_periodic
@@ -23,7 +24,7 @@ class Whole(liquid.Wet):
     """Those sections, and the ones that cannot be there beside water."""
 
     grains: object | None
-    ship: object | None
+    ship: Ship | None
 
 
 COMPRESSED = 0.1  # most that water is compressed by its own weight, g H/c0²
@@ -92,6 +93,8 @@ def _check_level_water(preset: Whole) -> None:
     """Raise LabError for what level water knows nothing of."""
     if preset.gauges:
         raise LabError('gauges: water.model = "level" knows none; leave them out, or take "sph".')
+    if preset.inflow and preset.ship.coupling == "staggered":
+        raise LabError('ship.coupling: "staggered" is not stable with level water that enters; take "instant".')
     names = ["tank", *preset.tanks]
     wet = {names[pool.number] for pool in preset.pools}
     for name, part in preset.parts.items():
