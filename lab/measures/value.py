@@ -105,6 +105,7 @@ KINDS = {
     "halves": "half the difference between the two halves of the time looked at",
     "coherence": "standard error of a transfer function, from its coherence and the number of independent pieces",
     "resolution": "half the distance to the next value that the samples can tell apart",
+    "sampling": "standard error of a share of points drawn at random",
     "creep": "how far the bed still moves where the number is read",
 }
 
