@@ -57,5 +57,6 @@ def touching(preset: Preset, recorded: Recorded) -> Scene:
         parts=tuple(replace(part, tank=0, free=None) for part in met),
         thickness=preset.thickness,
         length=preset.tank.length,
+        solid=preset.tank.solid,
     )
     return replace(scene, step=STILL)

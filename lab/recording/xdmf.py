@@ -12,8 +12,9 @@ from xml.etree import ElementTree as Xml
 from lab.base.errors import LabError
 from lab.base.files import replacing
 from lab.recording import Recording
+from solvers.machine.quantity import SPACE
 
-KINDS = {1: "Scalar", 2: "Vector"}  # by the number of components
+KINDS = {1: "Scalar", 2: "Vector", 3: "Vector"}  # by the number of components
 
 
 class Points(NamedTuple):
@@ -64,7 +65,8 @@ def _points(recording: Recording, matter: str, at: tuple[int, int], time: float)
     grid = Xml.Element("Grid", Name=matter, GridType="Uniform")
     _add(grid, "Time", Value=repr(time))
     _add(grid, "Topology", TopologyType="Polyvertex", NumberOfElements=shape[1])
-    _add_slab(_add(grid, "Geometry", GeometryType="XY"), recording, f"frames/{points.place}", at)
+    kind = "XYZ" if recording.content.axes == SPACE else "XY"  # of y, z and x, in this order
+    _add_slab(_add(grid, "Geometry", GeometryType=kind), recording, f"frames/{points.place}", at)
     _add_slab(_add_values(grid, points.size.partition("/")[2], 1), recording, points.size, at[1:])
     for name, quantity in recording.frames.quantities.items():
         if quantity.per == points.owner and name != points.place:

@@ -43,6 +43,8 @@ def _check(recording: Recording, world: int) -> None:
     preset, where = recording.preset, recording.path
     if preset.grains is None or not len(recording.frames["time"]):
         raise LabError(f"{where} has no picture of grains: a bed is written from a run with grains.")
+    if preset.tank.solid is not None:
+        raise LabError(f"{where} is in space: a bed file lists grains of the plane alone.")
     if preset.shapes or preset.kinds:
         what = "irregular grains" if preset.shapes else "grains of several kinds"
         raise LabError(f"{where}: a bed file lists round grains of one kind, and these are {what}.")

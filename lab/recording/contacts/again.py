@@ -12,6 +12,7 @@ from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from solvers.grains.pressing import UNTOUCHED, Pressing
 from solvers.machine.errors import BadState
+from solvers.machine.quantity import PLANE
 from solvers.simulation import Simulation
 
 KEPT = 3  # frames whose forces are kept
@@ -27,7 +28,7 @@ class Again:
         self._kept: dict[float, list[Pressing]] = {}
 
     def read(self, time: float, position: np.ndarray, angle: np.ndarray) -> list[Pressing]:
-        """The forces in each world at a time (s) at which the grains are at `position` (W, n, 2) m and `angle` (W, n).
+        """The forces in each world at a time (s), at which grains have a `position` (W, n, axes) m and an `angle`.
 
         Grains without a finite place touch nothing.
         """
@@ -61,11 +62,11 @@ class Again:
         return [made.pressing(w) for w in range(count)]
 
     def _set_aside(self, position: np.ndarray) -> np.ndarray:
-        """The places (W, n, 2) m, of grains that are gone far from the tank and from each other."""
+        """The places (W, n, axes) m, of grains that are gone far from the tank and from each other."""
         gone = ~np.isfinite(position).all(axis=2)
         if not gone.any():
             return position
-        outline = self._scene.outline
+        outline, away = self._scene.outline, np.eye(position.shape[2])[0]
         steps = np.arange(position.shape[1]) * APART * self._scene.grains.radius.max()
-        high = outline.max(axis=0) + AWAY * np.ptp(outline, axis=0)
-        return np.where(gone[..., None], high + steps[:, None] * np.array([1.0, 0.0]), position)
+        high = np.pad(outline.max(axis=0) + AWAY * np.ptp(outline, axis=0), (0, position.shape[2] - PLANE))
+        return np.where(gone[..., None], high + steps[:, None] * away, position)

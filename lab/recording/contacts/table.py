@@ -18,16 +18,17 @@ from lab.preset.schema import Preset
 from lab.recording.contacts.again import Again
 from lab.recording.contacts.stress import coordination, pressures, stresses
 from solvers.grains.pressing import NO_PIECE, NOBODY, Pressing
+from solvers.machine.quantity import DIRECTIONS, directions
 
 if TYPE_CHECKING:
     import xarray
 
 GRAIN, FIXED, WALL = "grain", "fixed", "wall"  # what a grain touches, or the name of a part
-COLUMNS = {  # of the table: the components, unit and label of each
+COLUMNS = {  # of the table: the components, of directions those of the scene's axes, unit and label of each
     "grains": (("first", "second"), "1", "numbers of the grains that touch, from 0; -1 is none"),
     "kind": ((), "", "what the first grain touches: grain, fixed, wall, or a part by its name"),
-    "place": (("y", "z"), "m", "place of the contact in the tank"),
-    "normal": (("y", "z"), "1", "direction in which the first grain is pushed"),
+    "place": (DIRECTIONS, "m", "place of the contact in the tank"),
+    "normal": (DIRECTIONS, "1", "direction in which the first grain is pushed"),
     "overlap": ((), "m", "how far both would lie in each other"),
     "normal_force": ((), "N", "elastic force along the normal"),
 }
@@ -44,9 +45,9 @@ class Contacts:
     """The k contacts of the n grains of a bed with an elastic force, at one time, in the tank's frame.
 
     time s, world; grains (k, 2): numbers, the second -1 where it is no movable grain; kind (k,): "grain", "fixed" (a
-    grain of a rough wall), "wall" or the name of a part; place (k, 2) m; normal (k, 2): direction of the push on the
-    first grain; overlap (k,) m; normal_force (k,) N, elastic: without friction, damping and cohesion.
-    stress (n, 2, 2) Pa of each grain, pressing positive; pressure (n,) Pa; number (n,): contacts of each grain;
+    grain of a rough wall), "wall" or the name of a part; place (k, axes) m; normal (k, axes): direction of the push on
+    the first grain; overlap (k,) m; normal_force (k,) N, elastic: without friction, damping and cohesion.
+    stress (n, axes, axes) Pa of each grain, pressing positive; pressure (n,) Pa; number (n,): contacts of each grain;
     coordination: their mean as the measure contact_number has it.
     """
 
@@ -73,7 +74,7 @@ class Contacts:
 
     @property
     def place(self) -> np.ndarray:
-        """Where they touch (k, 2), m."""
+        """Where they touch (k, axes), m."""
         return self.pressing.place
 
     @property
@@ -84,16 +85,16 @@ class Contacts:
     @cached_property
     def normal_force(self) -> np.ndarray:
         """The elastic force along the normal (k,), N."""
-        return np.hypot(*self.pressing.force.T)
+        return np.hypot.reduce(self.pressing.force, axis=1)
 
     @cached_property
     def normal(self) -> np.ndarray:
-        """The direction (k, 2) in which the first grain is pushed."""
+        """The direction (k, axes) in which the first grain is pushed."""
         return self.pressing.force / self.normal_force[:, None]
 
     @cached_property
     def stress(self) -> np.ndarray:
-        """Mean stress (n, 2, 2) Pa in each grain (`stresses`)."""
+        """Mean stress (n, axes, axes) Pa in each grain (`stresses`)."""
         return stresses(self.pressing, self.position, self.radius)
 
     @cached_property
@@ -103,7 +104,7 @@ class Contacts:
 
     @cached_property
     def mean_stress(self) -> np.ndarray:
-        """Mean stress (2, 2) Pa over the volume of all grains; times their share of a region it is that of the bed."""
+        """Mean stress (axes, axes) Pa over the volume of all grains; times their share of a region that of the bed."""
         volume = self.radius**3
         return (self.stress * volume[:, None, None]).sum(axis=0) / volume.sum()
 
@@ -119,11 +120,15 @@ class Contacts:
         return float(coordination(len(self), self.inside))
 
     def table(self) -> dict[str, np.ndarray]:
-        """The columns by name, each (k,); those of two components end with _y, _z, _first or _second."""
+        """The columns by name, each (k,); those of several components end with _y, _z, _x, _first or _second."""
         found = {}
         for name, (parts, _, _) in COLUMNS.items():
             values = getattr(self, name)
-            found |= {f"{name}_{part}": values[:, i] for i, part in enumerate(parts)} if parts else {name: values}
+            found |= (
+                {f"{name}_{part}": column for part, column in zip(parts, values.T, strict=False)}
+                if parts
+                else {name: values}
+            )
         return found
 
     def write(self, path: Path | str) -> Path:
@@ -150,8 +155,8 @@ class Contacts:
         found["pressure"] = "grain", self.pressure, {"units": "Pa", "long_name": "mean pressure in the grain"}
         found["number"] = "grain", self.number, {"units": "1", "long_name": "contacts of the grain"}
         found["coordination"] = (), self.coordination, {"units": "1", "long_name": "mean coordination number"}
-        plane = ["y", "z"]
-        coordinates = {"time": self.time, "world": self.world, "end": ["first", "second"], "axis": plane, "arm": plane}
+        axes = [*directions(self.position.shape[1])]
+        coordinates = {"time": self.time, "world": self.world, "end": ["first", "second"], "axis": axes, "arm": axes}
         return xarray.Dataset(found, coordinates)
 
 
