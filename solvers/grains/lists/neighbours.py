@@ -28,7 +28,7 @@ LANES = 8  # pairs a pass of the force loop: two AVX2 registers of 64-bit number
 # space. A unit of a single grain lists all of its neighbours (full list).
 ROOM = {
     PLANE: {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))},
-    SPACE: {False: ((8, 16), (3, 16)), True: ((0, 24), (0, 6))},
+    SPACE: {False: ((6, 24), (1, 96)), True: ((0, 24), (0, 6))},
 }
 # Pairs of a unit with others, in columns or layers of its surface, by the share of its grains that lie there
 ACROSS = {PLANE: (8, 1.0 / 2.0), SPACE: (12, 2.0 / 3.0)}

@@ -149,6 +149,7 @@ def test_the_tank_is_drawn_at_its_pose_with_the_grains_inside(recording, frame, 
         assert edge.min() < grain.min() and edge.max() - 12 < grain.max() < edge.max()
 
 
+@pytest.mark.slow
 def test_one_of_four_beds_is_shown_larger(four_beds):
     all_beds, one_bed = (
         (np.ptp(pictures_of(four_beds, [0], world=world)[0][:, :430], axis=2) > 60).sum() for world in (None, 2)
@@ -214,6 +215,7 @@ def test_the_curves_grow_with_the_film(four_beds):
     assert 0 < drawn[0] < drawn[1] < drawn[2]
 
 
+@pytest.mark.slow
 def test_beds_with_different_motions_share_only_the_clock(four_beds, tmp_path, monkeypatch):
     """Their readings stand beside their names; those of beds that move alike beside the clock."""
     apart, write, told = shutil.copy(four_beds, tmp_path), Texts.write, []
@@ -344,6 +346,7 @@ def test_a_grain_outside_the_shown_part_is_not_painted_elsewhere(tmp_path):
     assert (coloured(picture, WALL, 3)[1].max() - coloured(picture, WALL, 3)[1].min()) > 150  # not shrunk to nothing
 
 
+@pytest.mark.slow
 def test_fixed_grains_are_grey_unmarked_and_behind_the_others(tmp_path):
     fixed = np.array([(0.0, 0.02, 0.003), (0.05, 0.0, 0.004), (0.07, 0.03, 0.004)])
     plain = low_tank(tmp_path / "bare")
@@ -369,6 +372,7 @@ def test_moving_parts_are_plates_at_their_displacement(tmp_path):
 # --- grids
 
 
+@pytest.mark.slow
 def test_a_grid_shows_every_bed_with_its_caption_on_one_scale(four_beds, recording, tmp_path):
     beds = [(four_beds, k) for k in range(4)] * 4 + [recording] * 8
     out = render_grid(

@@ -90,6 +90,7 @@ def filled() -> Iterator[tuple[Simulation, list]]:
     run.close()
 
 
+@pytest.mark.slow
 def test_the_flow_is_that_of_the_tool(filled):
     """For openings at any slope and levels on both sides of them, both ways, to 0.1 % of the largest."""
     heads, rng = filled[0].water.inflow.heads, np.random.default_rng(1)

@@ -52,6 +52,7 @@ def free(run: Simulation, scene: Scene) -> Simulation:
     return run
 
 
+@pytest.mark.slow
 def test_a_free_drop_keeps_its_momentum_and_turning(strained):
     scene = drop(2.0)
     scene.fluid.particles["velocity"][0, :, 0] -= 3.0 * scene.fluid.particles["position"][0, :, 1]  # it also turns

@@ -254,6 +254,7 @@ def test_no_contact_is_missed(usual):
     np.testing.assert_array_equal(counted, expected)
 
 
+@pytest.mark.slow
 def test_the_skin_follows_the_speed_and_no_contact_is_missed(usual):
     """Lists of the gas have wide skins and seldom expire, those of the stack thin ones; both move as with any skin."""
     run = shaken(None, room=2)

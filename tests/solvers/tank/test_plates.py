@@ -116,6 +116,7 @@ def flight(request) -> Flight:
     return Flight(*(c.reshape(*shape, *c.shape[2:]) for c in columns[:5]), columns[5], scene.credible_speed())
 
 
+@pytest.mark.slow
 def test_a_moving_plate_is_a_still_one_seen_from_a_moving_frame(flight):
     """Galileo: positions, velocities and spins agree, whatever the impact, with friction and without."""
     shift = MOVING - STILL + V * flight.time[:, None, None, None]

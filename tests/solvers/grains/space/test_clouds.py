@@ -75,6 +75,7 @@ def test_momentum_and_angular_momentum_are_kept(room):
     np.testing.assert_allclose((after - before).sum(axis=0), 0.0, atol=1e-12 * moment)
 
 
+@pytest.mark.slow
 def test_grains_in_a_plane_move_as_the_discs_of_the_plane(room):
     """The same laws, masses and inertias: to rounding, which chaos lets grow in a thousand steps."""
     start = cloud(flat=True)

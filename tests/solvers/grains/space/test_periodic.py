@@ -43,6 +43,7 @@ def fly(run, shift, along=0.0, steps=300):
     return state["position"][0], state["velocity"][0]
 
 
+@pytest.mark.slow
 def test_a_cloud_across_the_end_of_a_slice_moves_as_one_in_its_middle(slice_of_tank):
     """Shifted by half the length, half of the cloud is on either side; all differences are to the nearest image."""
     place, velocity = fly(slice_of_tank, 0.0)
@@ -54,6 +55,7 @@ def test_a_cloud_across_the_end_of_a_slice_moves_as_one_in_its_middle(slice_of_t
     np.testing.assert_allclose(as_fast, velocity, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_cloud_that_flies_round_and_round_collides_as_one_that_stays(slice_of_tank):
     """At 10 m/s it passes the end once or twice; in its own axes all is as at rest, but for the digits of its speed."""
     place, velocity = fly(slice_of_tank, 0.0)
