@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from solvers.machine import wide
 from solvers.tank.solids.solid import Prism
 from tests.oracles.scenes import box, material, simulation
 
@@ -23,10 +24,9 @@ def flown(threads=1, grain=GRAIN, **scene):
     place += 1.05 * RADIUS - place.min(axis=0) - np.array([0.5 * ROOM, 0.0, 0.5 * ROOM])
     velocity = np.array([-0.3, -0.3, -0.3]) + rng.uniform(-0.1, 0.1, place.shape)
     spin = rng.uniform(-50.0, 50.0, place.shape)
-    common = {"tangential": "mindlin", "stiffness_scale": 1e-3, "step": DT} | scene
-    run = simulation(
-        place[None], RADIUS, box(ROOM, ROOM), grain, None, velocity, spin[None], threads, solid=Prism(ROOM), **common
-    )
+    common = {"tangential": "mindlin", "stiffness_scale": 1e-3, "step": DT, "solid": Prism(ROOM)} | scene
+    run = simulation(place[None], RADIUS, box(ROOM, ROOM), grain, None, velocity, spin[None], threads, **common)
+    assert run.wide == (wide.lanes() > 0) or run.schedule_name == "per-grain"
     run.advance(STEPS)
     found, contacts = run.snapshot()["position"][0], int(run.observe()["contacts"][0])
     run.arrays.release()
@@ -75,3 +75,22 @@ def test_laws_with_several_directions_keep_a_cloud_together(tangential, rolling)
 def test_wet_spheres(cohesion):
     """Liquid bridges act along the normal, in space as in the plane."""
     assert np.isfinite(flown(grain=WET[cohesion], cohesion=cohesion)).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "models",
+    [
+        {},
+        {"twisting": "marshall", "rolling": "elastic-plastic"},
+        {"tangential": "haff-werner", "rolling": "constant-torque"},
+        {"solid": Prism(ROOM, periodic=True)},
+    ],
+    ids=str,
+)
+def test_real_vectors_move_spheres_as_scalars_do(monkeypatch, models):
+    """Blocks of pairs on eight real lanes: to rounding, which collisions make grow."""
+    monkeypatch.setattr(wide, "lanes", lambda: 0)
+    scalars = flown(**models)
+    monkeypatch.setattr(wide, "lanes", lambda: 8)
+    np.testing.assert_allclose(flown(**models), scalars, rtol=0.0, atol=1e-6 * 2.0 * RADIUS)
