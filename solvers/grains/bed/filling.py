@@ -98,7 +98,10 @@ def start_positions(
         raise DoesNotFit(
             f"{len(radius)} grains of up to {size} do not fit the {room}, which has room for {len(sites)}."
         )
-    chosen = sites[_thrown(np.delete(sites, UP, axis=1), len(radius), random)] if thrown else sites[: len(radius)]
+    if thrown:
+        chosen = sites[_thrown(np.delete(sites, UP, axis=1), len(radius), random)]
+    else:
+        chosen = sites[: len(radius)] if solid is None else sites[_level(sites[:, UP], len(radius), random)]
     shaken = chosen + random.uniform(-1.0, 1.0, chosen.shape) * (SPACING - 1.0) * reach * 0.7
     inner = np.full(len(lower), reach)
     if solid is not None and solid.period:
@@ -147,6 +150,16 @@ def _drawn_out(sites: np.ndarray, pitch: float, solid: Solid, half: float) -> np
         pitch = solid.period / max(1, count)
     x = pitch * (np.arange(count) - 0.5 * (count - 1))
     return np.column_stack([np.repeat(sites, count, axis=0), np.tile(x, len(sites))])
+
+
+def _level(height: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
+    """Indices of so many sites of a lattice from the floor up, of `height` (n,) m; in the last row any of them.
+
+    In space a row is a layer: filled from one side its slope would be that of the bed.
+    """
+    last = np.isclose(height, height[count - 1], rtol=0.0, atol=1e-9 * np.ptp(height))
+    below, top = np.flatnonzero(~last[:count]), np.flatnonzero(last)
+    return np.concatenate([below, np.sort(random.permutation(top)[: count - len(below)])])
 
 
 def _thrown(columns: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:

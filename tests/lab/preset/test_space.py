@@ -78,3 +78,13 @@ def test_a_bed_starts_within_its_tank_without_overlaps(preset):
 def test_a_scene_in_space_is_not_steered():
     with pytest.raises(LabError, match=r"^tank.turned: a scene in space cannot be steered yet"):
         steerable(load("space/silo"))
+
+
+def test_a_bed_starts_level():
+    """Its last layer, which is not full, is filled evenly: the centre lies within three deviations of the middle."""
+    loaded = load(CHICKPEAS).resolved
+    _, position = build(loaded)
+    place = position[0]
+    layer = np.count_nonzero(np.abs(place[:, 1] - place[:, 1].max()) < 0.25 * loaded.mean_diameter)
+    most = 3.0 * np.sqrt(layer / 12.0) * loaded.tank.width / len(place)
+    assert abs(place[:, 0].mean()) < most
