@@ -107,7 +107,8 @@ def test_a_quick_variant_states_its_differences_and_differs_only_in_cost(name, m
         motion = replace(motion, tilt=replace(motion.tilt, rate=whole.motion.tilt.rate))
     alike = {"quick": "", "run": whole.run, "record": whole.record, "contact": contact, "motion": motion}
     if quick.grains:
-        alike["grains"] = replace(quick.grains, diameter=whole.grains.diameter, count=whole.grains.count)
+        of_size = {name: getattr(whole.grains, name) for name in ("diameter", "table", "count")}
+        alike["grains"] = replace(quick.grains, **of_size)
     if quick.water:
         alike["water"] = replace(quick.water, spacing=whole.water.spacing)
     assert replace(quick, **alike) == whole

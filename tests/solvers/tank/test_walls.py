@@ -37,7 +37,7 @@ def probe(
         y, z = points[i, 0], points[i, 1]
         holds[i] = ti.cast(walls.holds(y, z), ti.i32)
         for feature in range(walls.features):
-            near[i, feature] = ti.cast(walls.near(feature, shift, y, z, reach), ti.i32)
+            near[i, feature] = ti.cast(walls.near(feature, shift, reach, y, z), ti.i32)
             gap = walls.gap(feature, shift, y, z)
             for k in ti.static(range(3)):
                 gaps[i, feature, k] = gap[k]
