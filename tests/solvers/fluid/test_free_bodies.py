@@ -124,6 +124,7 @@ def test_a_thin_wall_keeps_the_water_on_either_side_apart(thin):
     assert np.mean(levels) == pytest.approx(0.3, abs=0.02 * 0.05)
 
 
+@pytest.mark.slow
 def test_water_flows_in_by_forces_that_are_equal_and_opposite(thin):
     """Open the hole: water enters there alone, by the flow by which the room fills; momentum to 1e-12 of Σ|F|Δt.
 

@@ -112,6 +112,7 @@ def test_the_flow_is_that_of_the_tool(filled):
     assert found == pytest.approx(wanted, abs=1e-3 * max(wanted))
 
 
+@pytest.mark.slow
 def test_the_water_that_enters_is_that_of_the_flow(filled):
     """By the level as by Q of the tool, integrated: one particle of the volume; and no more than the sea's level."""
     _, rows = filled

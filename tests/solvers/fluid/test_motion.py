@@ -97,6 +97,7 @@ def test_walls_work_on_the_water_of_a_moving_tank():
     np.testing.assert_allclose(gain + taken, work, atol=2e-3 * abs(work[0]))
 
 
+@pytest.mark.slow
 def test_a_strained_drop_becomes_the_ellipse_of_theory(strained):
     """u = σ (y, −z): σ' = σ² (b² − a²)/(a² + b²), a' = σ a, b' = −σ b (Monaghan 1994, eq. 4.4), to 2 % of the axis."""
     duration, run = 0.06, free(strained, drop(STRAIN))

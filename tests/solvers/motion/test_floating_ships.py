@@ -216,6 +216,7 @@ def twin(run):
     return run.sail(run.every, CLOSE, round(LOOKS * CLOSE), nudged=True)
 
 
+@pytest.mark.slow
 def test_a_ship_without_cargo_moves_as_the_ship_alone(run, voyage):
     """Waves, memory, springs, viscous damping: the method of Runge and Kutta to rounding."""
     vessel = run.simulation.scene.vessels[ALONE]
@@ -228,6 +229,7 @@ def test_a_ship_without_cargo_moves_as_the_ship_alone(run, voyage):
     assert voyage["pose"][early, ALONE][1:] == pytest.approx(alone.state[at[1:], :3], abs=1e-10)
 
 
+@pytest.mark.slow
 def test_cargo_that_does_not_move_is_part_of_the_rigid_body(run, voyage):
     """Twice as heavy as the hull, at a roll of a third of a degree: as one rigid body, within the bed's compliance."""
     vessel = run.simulation.scene.vessels[TINY]
@@ -242,6 +244,7 @@ def test_cargo_that_does_not_move_is_part_of_the_rigid_body(run, voyage):
     assert voyage["roll"][later, TINY] == pytest.approx(wanted, abs=0.003 * np.ptp(wanted))
 
 
+@pytest.mark.slow
 @pytest.mark.slow  # the method itself is to rounding, above
 @pytest.mark.parametrize(("world", "until"), [(ALONE, CLOSE), (TINY, CLOSE), (LOSSY, 1.55)])
 def test_half_the_interval_gives_the_same_motion(voyage, finer, twin, world, until):
@@ -260,6 +263,7 @@ def test_half_the_interval_gives_the_same_motion(voyage, finer, twin, world, unt
     assert world != LOSSY or np.abs(moved).max() > RADIUS
 
 
+@pytest.mark.slow
 def test_momentum_of_ship_and_cargo_without_water(run, voyage):
     """With weight alone m (v_G + g t) is constant, whatever the impacts of the grains on the hull."""
     ship = run.hull(voyage, VACUUM)
@@ -276,6 +280,7 @@ def test_momentum_of_ship_and_cargo_without_water(run, voyage):
     assert total == pytest.approx(np.tile(total[0], (len(total), 1)), abs=1e-4 * mass)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("world", [LIVELY, LOSSY])
 def test_energy(run, voyage, world):
     """Light hull, waves, elastic and smooth or lossy and rough grains: no joule of the waves' work is unaccounted for.
@@ -298,6 +303,7 @@ def counted(voyage, world):
     return (voyage["lost"][:, world] - voyage["lost"][0, world]) / SHEET
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("world", [LIVELY, LOSSY, ROLLING])
 def test_losses_of_grains_are_counted(voyage, world):
     """Less of their own energy and the work they do on the hull is ever more heat, contact by contact; or nothing."""
@@ -310,6 +316,7 @@ def test_losses_of_grains_are_counted(voyage, world):
         assert np.ptp(lost) > 0.2 * np.ptp(voyage["given"][:, world])
 
 
+@pytest.mark.slow
 def test_a_hull_lighter_than_her_cargo_rolls_over(run, voyage):
     """Top-heavy, let go at a heel of 115°: through 180° and back, all finite."""
     roll = voyage["roll"][:, ROLLING]
@@ -319,6 +326,7 @@ def test_a_hull_lighter_than_her_cargo_rolls_over(run, voyage):
     assert voyage["capsized"][-1, ROLLING] < 0.0
 
 
+@pytest.mark.slow
 def test_a_capsize_ends_only_its_world(run, voyage):
     """Resonance without damping: the world ends at the step at which roll leaves its limits; the others continue."""
     for world, limit in ((RESONANT, 0.5), (OVER, 0.3)):
@@ -330,6 +338,7 @@ def test_a_capsize_ends_only_its_world(run, voyage):
     assert voyage["capsized"][-1, LIVELY] == -1.0
 
 
+@pytest.mark.slow
 def test_a_ship_held_by_her_axis_is_heeled_about_it(voyage):
     """From upright to the heel and on as she rolls: the axis stays in the waterline, over y = 0."""
     tank = voyage["tank"][:, HATCH]
@@ -339,6 +348,7 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(voyage):
     assert tank[:, :2] - arm == pytest.approx(np.tile([0.0, height], (len(tank), 1)), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_flooding_through_a_hatch_ends_only_its_world(run, voyage):
     """At the interval at which the edge is under the waves' surface, as of the ship by herself; the rest sail on."""
     when, interval = voyage["flooded"][-1, HATCH], run.every * run.simulation.dt
@@ -357,6 +367,7 @@ def test_flooding_through_a_hatch_ends_only_its_world(run, voyage):
     assert (voyage["flooded"][-1, :HATCH] == -1.0).all() and voyage["capsized"][-1, HATCH] == -1.0
 
 
+@pytest.mark.slow
 def test_a_ship_is_heeled_smoothly(run, voyage):
     """Until she is let go her tank's speed and acceleration are those of its path (eq. F.1); the grains feel them."""
     frame, held = run.simulation.carrier, slice(1, 5)
@@ -378,11 +389,13 @@ def test_a_ship_is_heeled_smoothly(run, voyage):
     assert felt[:, :4] == pytest.approx(np.column_stack([pull, speed[:, 2], gain[:, 2]]), abs=1e-3)
 
 
+@pytest.mark.slow
 def test_grains_settle_before_the_ship_is_released(run):
     """They have fallen by the tenth of a radius by which they were placed too high."""
     assert run.height == pytest.approx(SITES[:, 1].mean(), abs=0.02 * RADIUS)
 
 
+@pytest.mark.slow
 def test_a_laden_ship_has_the_given_mass_and_inertia(run, voyage):
     """Hull and cargo together have the mass and inertia given for both."""
     cargo = run.cargo[OVER]
@@ -404,6 +417,7 @@ def later(run, steps=1500):
     return run.state()
 
 
+@pytest.mark.slow
 def test_a_state_continues_bit_for_bit(run):
     """From the middle of an interval, as after an interruption."""
     simulation = run.simulation

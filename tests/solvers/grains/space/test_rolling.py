@@ -52,6 +52,7 @@ def at(run, time):
     return (state[name][0] for name in ("position", "velocity", "spin"))
 
 
+@pytest.mark.slow
 def test_spheres_slide_roll_and_bounce_in_any_direction(run):
     """One flight of all four; the sphere that slides bends its way in a parabola until it rolls."""
     start = run.snapshot()["position"][0]
