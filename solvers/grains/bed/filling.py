@@ -22,8 +22,8 @@ from solvers.tank.solids.solid import Solid
 # Area fraction of settled frictional discs: 0.82 (random close packing of discs, Berryman 1983) less the loose layers
 # at walls and surface; used only to convert a depth to a count.
 PACKING = 0.81
-# Volume fraction of settled frictional spheres, between random loose and random close packing, 0.55 and 0.64 (Silbert
-# 2010), less the loose layers at walls and surface
+# Volume fraction of settled frictional spheres, between random loose and random close packing, 0.55 and 0.64 (Silbert,
+# arXiv:1108.0012), less the loose layers at walls and surface
 PACKING_OF_SPHERES = 0.57
 SPACING = 1.04
 HANDFUL = 3  # grains across and upwards in a heap that is thrown at once

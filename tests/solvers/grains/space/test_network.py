@@ -51,7 +51,7 @@ def largest(place, tangents):
 
 
 def test_the_densest_packing_in_space_is_a_third_stiffer_than_that_of_the_plane():
-    """3 and 30/7 in the plane, 4 and 40/7 in space, from below: crystals of some hundred grains reach 95 % of these."""
+    """3 and 30/7 in the plane, 4 and 40/7 in space, from below: crystals of some hundred grains reach 93 % of these."""
     plane, space = largest(sheet(20), 1), largest(crystal(4), 2)
     for found, limit in zip((*plane, *space), (3.0, 30.0 / 7.0, 4.0, 40.0 / 7.0), strict=True):
         assert 0.93 * limit < found <= limit * (1.0 + 1e-9)

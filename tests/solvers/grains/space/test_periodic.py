@@ -36,9 +36,11 @@ def fly(run, shift, along=0.0, steps=300):
     place = np.add(place, [0.0, 0.0, shift])
     place[:, 2] -= ALONG * np.round(place[:, 2] / ALONG)
     run.place(place[None], velocity[None] + [0.0, 0.0, along], spin[None])
-    for _ in range(3):
-        run.advance(steps // 3)
-    assert run.observe()["contacts"][0] >= 0
+    contacts = 0
+    for _ in range(10):
+        run.advance(steps // 10)
+        contacts = max(contacts, int(run.observe()["contacts"][0]))
+    assert contacts > 40
     state = run.snapshot()
     return state["position"][0], state["velocity"][0]
 
