@@ -78,7 +78,7 @@ def verify(cases: tuple[str, ...], level: str | None, out: Path, fast: bool, pag
 
 
 @click.command()
-@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship", "water", "coupled"]))
+@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship", "water", "coupled", "space"]))
 @click.argument("experiments", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
 @out_option("of the report and of its runs", default=Path("renders/reproduce"))
@@ -98,6 +98,7 @@ def reproduce(
     cargolab reproduce ship --quick             those with ships in waves
     cargolab reproduce water --quick            those with water in tanks
     cargolab reproduce coupled --quick          those with water in the tanks of ships
+    cargolab reproduce space --quick            those with spheres in space
     cargolab reproduce granular --cluster tcp://node1:8786
     """
     from lab.studies.reproduce import reproduce as reproduced
