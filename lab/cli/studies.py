@@ -18,6 +18,8 @@ from lab.cli.options import (
 )
 from lab.preset.accuracy import LEVELS
 
+REPORTS = "granular", "shapes", "ship", "water", "coupled", "space"
+
 
 @click.command("list")
 @click.argument("group", required=False, default="")
@@ -78,7 +80,7 @@ def verify(cases: tuple[str, ...], level: str | None, out: Path, fast: bool, pag
 
 
 @click.command()
-@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship", "water", "coupled", "space"]))
+@click.argument("what", metavar="REPORT", type=click.Choice(REPORTS))
 @click.argument("experiments", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
 @out_option("of the report and of its runs", default=Path("renders/reproduce"))

@@ -62,6 +62,35 @@ def test_peers_are_told_velocities_and_the_tilt(code, run, monkeypatch, tmp_path
     np.testing.assert_allclose([float(angle) for angle in ramp.split(",")], -30.0)
 
 
+@pytest.mark.parametrize(("code", "run"), [(lammps, lammps.run_lammps), (liggghts, liggghts.run_liggghts)])
+def test_peers_are_told_the_places_of_spheres_and_the_end_walls(code, run, monkeypatch, tmp_path):
+    def stop(*_):
+        raise LabError("stop")
+
+    monkeypatch.setattr(peer, "execute", stop)
+    place = np.array([[0.01, 0.02, -0.03], [-0.01, 0.04, 0.03]])  # y, z, x
+    task = peer.Task(place, np.full(2, 1e-3), 0.1, 0.2, steps.SOFT, 1e-5, 10, workdir=tmp_path, along=0.08)
+    with pytest.raises(LabError, match="stop"):
+        run(task)
+    bed, deck = (tmp_path / peer.BED).read_text(), (tmp_path / peer.DECK).read_text()
+    rows = bed.split("Atoms\n\n")[1].split()
+    np.testing.assert_array_equal(np.array(rows, dtype=float).reshape(2, 7)[:, [4, 6, 5]], place)
+    assert "-0.040000000000000001 0.040000000000000001 ylo yhi" in bed
+    ends = [word for line in deck.splitlines() if "yplane" in line for word in line.split("yplane")[1].split()]
+    assert sorted(map(float, ends)) == [-0.04, 0.04]
+
+
+@pytest.mark.parametrize("copies", [6, 100])
+def test_copies_of_a_bed_in_space_fill_one_tank(copies):
+    one = beds.Bed(np.full(2, 1e-3), np.array([[-5e-3, 1e-3, 4e-3], [5e-3, 1e-3, -4e-3]]), 0.02, 0.01)
+    many = one.times(copies)
+    assert many.count == 2 * copies
+    assert many.width * many.along == pytest.approx(copies * one.width * one.along)
+    assert np.abs(many.position[:, 0]).max() == pytest.approx(many.width / 2 - 5e-3)
+    assert np.abs(many.position[:, 2]).max() == pytest.approx(many.along / 2 - 1e-3)
+    assert len(np.unique(many.position, axis=0)) == many.count
+
+
 @pytest.mark.slow
 def test_the_lab_rebounds_with_the_restitution_asked_for():
     np.testing.assert_allclose(steps.rebounds_here(duration() / 100), 0.6 * SPEED, rtol=1e-3)

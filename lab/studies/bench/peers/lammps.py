@@ -1,8 +1,8 @@
 """The peer code LAMMPS (Thompson et al. 2022; www.lammps.org) on a bed of ours, timed and traced.
 
-Its grains are spheres in two dimensions and in three; the run is in three with every grain at zero depth, as
-LIGGGHTS', and as fast as in two. In a tilt not the tank turns but gravity, which leaves out the centrifugal and Euler
-accelerations.
+Its grains are spheres in two dimensions and in three; the run is in three, with every grain of the plane at zero
+depth, as LIGGGHTS', and as fast as in two. In a tilt not the tank turns but gravity, which leaves out the centrifugal
+and Euler accelerations.
 
 The contact law is `gran/hertz/history`, the faster of its granular styles, with the overlap d, effective radius R* and
 mass m*, shear displacement s: a normal force √(R* d) (K_n d + m* γ_n ḋ), not below zero (`limit_damping`); a tangential
@@ -51,10 +51,11 @@ pair_style gran/{style} {grains}
 pair_coeff * *
 fix sides all wall/gran {style} {walls} xplane {left:.17g} {right:.17g}
 fix ends all wall/gran {style} {walls} zplane 0 {lid:.17g}
-
+{fronts}
 """
+_FRONTS = "fix fronts all wall/gran {style} {walls} yplane -{half:.17g} {half:.17g}\n"  # of a tank in space
 _DUMP = """\
-write_dump all custom {final} id x z vx vz modify sort id format float %.17g
+write_dump all custom {final} id x z y vx vz vy modify sort id format float %.17g
 """
 
 
@@ -67,7 +68,9 @@ def run_lammps(task: Task) -> PeerRun:
     """Let LAMMPS do a task. Raises LabError if it is not installed or stops."""
     grains, walls = _models(task)
     style = STYLES[task.tangential]
-    deck = task.fill(_DECK + MOTION + _DUMP, skin=task.skin * task.diameter, style=style, grains=grains, walls=walls)
+    told = {"style": style, "grains": grains, "walls": walls}
+    told["fronts"] = "" if task.along is None else _FRONTS.format(half=task.along / 2, **told)
+    deck = task.fill(_DECK + MOTION + _DUMP, skin=task.skin * task.diameter, **told)
     return carry_out(NAME, EXECUTABLE, task, deck)
 
 

@@ -1,8 +1,8 @@
 """The peer code LIGGGHTS-PUBLIC 3.8 (www.cfdem.com) on a bed of ours, timed and traced.
 
 In its `dimension 2` grains have the mass of discs. So the run is in three dimensions with every
-grain at zero depth: nothing pushes a grain out of that plane, and its mass is a sphere's. Our
-(y, z) are LIGGGHTS' (x, z). In a tilt not the tank turns but gravity; that leaves out the
+grain of the plane at zero depth: nothing pushes a grain out of that plane, and its mass is a sphere's. Our
+(y, z) are LIGGGHTS' (x, z), our x its y. In a tilt not the tank turns but gravity; that leaves out the
 centrifugal and Euler accelerations, negligible at a slow rate.
 
 Its contact law, with E*, G*, R*, m* effective for the pair, overlap d and shear displacement s: a
@@ -52,10 +52,11 @@ fix left all wall/gran {model} primitive type 1 xplane {left:.17g}
 fix right all wall/gran {model} primitive type 1 xplane {right:.17g}
 fix floor all wall/gran {model} primitive type 1 zplane 0
 fix lid all wall/gran {model} primitive type 1 zplane {lid:.17g}
-
+{fronts}
 """
+_FRONT = "fix {name} all wall/gran {model} primitive type 1 yplane {place:.17g}\n"  # an end wall of a tank in space
 _DUMP = """\
-write_dump all custom {final} id x z vx vz modify format "%d %.17g %.17g %.17g %.17g"
+write_dump all custom {final} id x z y vx vz vy modify format "%d %.17g %.17g %.17g %.17g %.17g %.17g"
 """
 
 
@@ -66,7 +67,9 @@ def available() -> str | None:
 
 def run_liggghts(task: Task) -> PeerRun:
     """Let LIGGGHTS do a task, on one process. Raises LabError if it is not installed or stops."""
-    material = task.material
+    material, model = task.material, f"model hertz tangential {task.tangential}"
+    ends = {} if task.along is None else {"front": -task.along / 2, "back": task.along / 2}
+    fronts = "".join(_FRONT.format(name=name, model=model, place=place) for name, place in ends.items())
     deck = task.fill(
         _DECK + MOTION + _DUMP,
         skin=task.skin * task.diameter,
@@ -74,6 +77,7 @@ def run_liggghts(task: Task) -> PeerRun:
         poisson=material.poisson,
         restitution=material.restitution,
         friction=material.friction,
-        model=f"model hertz tangential {task.tangential}",
+        model=model,
+        fronts=fronts,
     )
     return carry_out(NAME, EXECUTABLE, task, deck)

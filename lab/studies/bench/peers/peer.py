@@ -68,13 +68,14 @@ class Shaking:
 class Task:
     """A bed at rest that remembers no earlier contact, and the steps that a peer is to take from it.
 
-    position: (n, 2) centres (y, z); the floor is z = 0, the walls are y = ± width / 2 (m).
+    position: (n, 2) centres (y, z), or (n, 3) with x; the floor is z = 0, the walls are y = ± width / 2 (m).
     radius: (n,) (m).
     width, height: inner size of the tank (m).
+    along: its length (m) along x, between walls at x = ± along / 2; None of a bed in the plane.
     material: of grains and walls; it must have a restitution.
     dt, steps: time step (s), and how many.
     tilt, tilt_rate: tilt of the tank at the start (rad) and its constant rate (rad/s), counter-clockwise positive.
-    velocity: (n, 2) of the grains at the start (m/s); None for grains at rest.
+    velocity: as `position`, of the grains at the start (m/s); None for grains at rest.
     shaking: sideways acceleration in time; None for a tank that stands still.
     gravity: (m/s^2).
     tangential: "history" is spring, dashpot and slider; "no_history" dashpot and slider.
@@ -103,6 +104,7 @@ class Task:
     processes: int = 1
     skin: float = SKIN
     workdir: Path | None = None
+    along: float | None = None
 
     def __post_init__(self):
         if self.material.restitution is None:
@@ -112,6 +114,11 @@ class Task:
     def diameter(self) -> float:
         """Mean diameter of the grains (m)."""
         return 2 * float(np.mean(self.radius))
+
+    @property
+    def depth(self) -> float:
+        """How far (m) a peer's box reaches along our x; grains of the plane have room to either side."""
+        return 4 * float(np.max(self.radius)) if self.along is None else self.along
 
     def fill(self, deck: str, **numbers: object) -> str:
         """A deck, with MOTION at its end but for a dump, with these numbers and those that every deck asks for."""
@@ -142,7 +149,7 @@ class PeerRun:
     grain_steps_per_s: grains times steps over that time (1/s).
     time: (T,) instants of the trace (s).
     centre_of_mass: (T, 2) centre of mass of all grains, (y, z) in the tank's frame (m).
-    position, velocity: (n, 2) of the grains at the end, (y, z) in the tank's frame, in the order given (m, m/s).
+    position, velocity: of the grains at the end, in the tank's frame, in the order given and by its axes (m, m/s).
     """
 
     loop_s: float
@@ -156,9 +163,7 @@ class PeerRun:
 def carry_out(name: str, executable: str, task: Task, deck: str) -> PeerRun:
     """Let a peer do what its deck says. Raises LabError if it is not installed or stops."""
     with working_folder(task.workdir) as folder:
-        bed = bed_file(task.position, task.radius, task.material.density, task.width, task.height)
-        bed += moving(task.velocity)
-        (folder / BED).write_text(bed)
+        (folder / BED).write_text(bed_file(task) + moving(task.velocity))
         (folder / DECK).write_text(deck)
         loop_s = execute(name, executable, ["-in", DECK], folder, task.processes)
         return read_outcome(folder, task, loop_s)
@@ -175,22 +180,22 @@ def working_folder(kept: Path | None) -> Iterator[Path]:
         yield kept
 
 
-def bed_file(position: np.ndarray, radius: np.ndarray, density: float, width: float, height: float) -> str:
-    """The data file: number, kind, diameter (m), density (kg/m³) and x, y, z (m) a grain; our (y, z) are (x, z)."""
-    depth = 4 * float(np.max(radius))
+def bed_file(task: Task) -> str:
+    """The data file: number, kind, diameter (m), density (kg/m³) and place (m) a grain; our y, z, x are its x, z, y."""
+    density, half = task.material.density, task.width / 2
     grains = (
-        f"{number} 1 {2 * r:.17g} {density:.17g} {y:.17g} 0 {z:.17g}"
-        for number, ((y, z), r) in enumerate(zip(position, radius, strict=True), start=1)
+        f"{number} 1 {2 * r:.17g} {density:.17g} {_theirs(place)}"
+        for number, (place, r) in enumerate(zip(task.position, task.radius, strict=True), start=1)
     )
     return "\n".join(
         (
-            "a bed of spheres in the plane y = 0",
+            "a bed of spheres",
             "",
-            f"{len(radius)} atoms",
+            f"{len(task.radius)} atoms",
             "1 atom types",
-            f"{-width / 2:.17g} {width / 2:.17g} xlo xhi",
-            f"{-depth / 2:.17g} {depth / 2:.17g} ylo yhi",
-            f"0 {height:.17g} zlo zhi",
+            f"{-half:.17g} {half:.17g} xlo xhi",
+            f"{-task.depth / 2:.17g} {task.depth / 2:.17g} ylo yhi",
+            f"0 {task.height:.17g} zlo zhi",
             "",
             "Atoms",
             "",
@@ -201,11 +206,17 @@ def bed_file(position: np.ndarray, radius: np.ndarray, density: float, width: fl
 
 
 def moving(velocity: np.ndarray | None) -> str:
-    """The data file's section of velocities (n, 2) m/s; nothing where there are none."""
+    """The data file's section of velocities (n, axes) m/s; nothing where there are none."""
     if velocity is None:
         return ""
-    rows = (f"{number} {y:.17g} 0 {z:.17g} 0 0 0" for number, (y, z) in enumerate(velocity, start=1))
+    rows = (f"{number} {_theirs(one)} 0 0 0" for number, one in enumerate(velocity, start=1))
     return "\n".join(("", "Velocities", "", *rows, ""))
+
+
+def _theirs(vector: np.ndarray) -> str:
+    """A vector (y, z) or (y, z, x) of ours as a peer reads it."""
+    y, z, x = vector if len(vector) == 3 else (*vector, 0.0)
+    return f"{y:.17g} {x:.17g} {z:.17g}"
 
 
 def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, processes: int = 1) -> float:
@@ -243,12 +254,13 @@ def read_outcome(folder: Path, task: Task, loop_s: float) -> PeerRun:
     trace = trace[trace[:, 0] > 0]
     final = np.loadtxt(folder / FINAL, skiprows=HEADER, ndmin=2)
     final = final[np.argsort(final[:, 0])]
-    start = np.average(task.position, axis=0, weights=np.asarray(task.radius) ** 3)
+    start = np.average(task.position[:, :2], axis=0, weights=np.asarray(task.radius) ** 3)
+    axes = np.shape(task.position)[1]
     return PeerRun(
         loop_s=loop_s,
         grain_steps_per_s=len(task.radius) * task.steps / loop_s,
         time=np.append(0.0, trace[:, 0] * task.dt),
         centre_of_mass=np.vstack((start, trace[:, 1:])),
-        position=final[:, 1:3],
-        velocity=final[:, 3:5],
+        position=final[:, 1:4][:, :axes],
+        velocity=final[:, 4:7][:, :axes],
     )

@@ -19,6 +19,7 @@ STUDIES = {
     "peers": peers.study,
     "equal-error": equal_error.study,
     "equal-large": equal_error.study_large,
+    "equal-spheres": equal_error.study_spheres,
     "curves": curves.study,
     "slow-tilts": curves.study_slow,
 }

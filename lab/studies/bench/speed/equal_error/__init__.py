@@ -1,7 +1,7 @@
 """Side by side with LIGGGHTS and LAMMPS: simulated seconds a wall second at an equal error of the restitution."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from shutil import rmtree
@@ -12,7 +12,7 @@ from lab.report.page import Page
 from lab.studies.bench.peers.peer import SKIN
 from lab.studies.bench.remembered import remembered
 from lab.studies.bench.speed import processors
-from lab.studies.bench.speed.beds import SCALE, usual_bed
+from lab.studies.bench.speed.beds import SCALE, Bed, bed_of_spheres, usual_bed
 from lab.studies.bench.speed.equal_error.situations import (
     LEAN,
     LONGEST_STRIDE,
@@ -56,6 +56,16 @@ class Effort:
     grain_steps: float = 5e6
     course: float = 0.02
     few_steps: int = 100
+    spheres: bool = False
+
+    @property
+    def words(self) -> str:
+        """Of what a bed is, beside its situation."""
+        return ", spheres in space" if self.spheres else ""
+
+    def bed(self, work: Path) -> Bed:
+        """The settled bed."""
+        return bed_of_spheres(work, self.count) if self.spheres else usual_bed(work, self.count)
 
     def steps(self, dt: float) -> float:
         """How long (s) the large bed is followed with steps of dt (s)."""
@@ -82,6 +92,16 @@ def study_large(page: Page, work: Path, fast: bool) -> None:
     report(page, work, effort, effort.copies, fast)
 
 
+def study_spheres(page: Page, work: Path, fast: bool) -> None:
+    """Add the sections on spheres in space to the page: a bed of usual size, ten copies of it, and a hundred."""
+    effort = replace(HASTY if fast else Effort(), spheres=True)
+    page.section("Beside other codes at equal error, spheres in space")
+    page.say("""As above, with equal spheres in a square tank twelve diameters wide, and with copies of it side by
+        side, for fewer steps.""")
+    for copies in (1, 10) if fast else (1, 10, 100):
+        report(page, work, effort, copies, fast)
+
+
 def report(page: Page, work: Path, effort: Effort, copies: int, fast: bool) -> None:
     """Time what is not timed yet, and add the table; or say that there is nobody to compare with."""
     codes = colliders()
@@ -89,7 +109,7 @@ def report(page: Page, work: Path, effort: Effort, copies: int, fast: bool) -> N
         page.say("No other code is installed here: the comparison is left out.")
         return
     rows, found = [], []
-    kept = work / f"equal-error-{copies}-{code()[:12]}"
+    kept = work / f"equal-error-{'spheres-' * effort.spheres}{copies}-{code()[:12]}"
     for grains, rule, where, dts, speeds in measured(codes, work, kept, effort, copies):
         for name, values in speeds.items():
             dt = dts[LAB] if name == MIXED else dts[name]
@@ -97,7 +117,7 @@ def report(page: Page, work: Path, effort: Effort, copies: int, fast: bool) -> N
             times = ["" if own not in speeds or name == own else ratio(speeds[own], values) for own in (LAB, LONGEST)]
             rows.append([f"{grains:,}", rule, where, name, share, step, f"{np.median(values):.3g}", *times])
             if name not in OWN:
-                bed = where if copies == 1 else f"{where}, {grains:,} grains"
+                bed = where + effort.words + ("" if copies == 1 else f", {grains:,} grains")
                 ours = [own for own in (LAB, LONGEST) if own in speeds]
                 found += [kept_ratio(name, rule, bed, speeds[own] / values, own) for own in ours]
     page.table([*HEADS, *(f"{own}: times as fast" for own in (LAB, LONGEST))], rows)
@@ -123,10 +143,11 @@ def say_how(page: Page, effort: Effort) -> None:
 
 def measured(codes: Mapping[str, Callable], work: Path, kept: Path, effort: Effort, copies: int) -> Iterator[tuple]:
     """What was timed: (grains, rule, bed, steps (s) by code, speeds); `kept` is the folder that spares timing again."""
-    steps = work / f"longest-steps-{code()[:12]}.npz"
-    found = remembered(steps, "equal error: steps", lambda: _packed(steps_taken(codes)))
+    bed = effort.bed(work)
+    steps = work / f"longest-steps-{'spheres-' * effort.spheres}{code()[:12]}.npz"
+    found = remembered(steps, "equal error: steps", lambda: _packed(steps_taken(codes, bed)))
     taken = {rule: dict(zip([*codes, LONGEST], values, strict=True)) for rule, values in found.items()}
-    beds = every_situation(usual_bed(work, effort.count), work)
+    beds = every_situation(bed, work)
     for rule, dts in taken.items():
         for where, one in beds.items():
             many = one.times(copies)

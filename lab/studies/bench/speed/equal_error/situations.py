@@ -28,7 +28,7 @@ LONGEST_STRIDE = 2  # of the lab's steps while grains are slow, as in its runs
 
 @dataclass(frozen=True)
 class Situation:
-    """A bed whose grains have velocities (n, 2) m/s, or rest, and the motion (s since it began) of its tank."""
+    """A bed whose grains have velocities (n, axes) m/s, or rest, and the motion (s since it began) of its tank."""
 
     bed: Bed
     velocity: np.ndarray | None = None
@@ -51,8 +51,9 @@ def every_situation(bed: Bed, work: Path) -> dict[str, Situation]:
     """By its words each situation of a settled bed; beds in motion are kept in the folder `work`."""
     leaning = Tilt(1.0, LEAN)
     begun = 1.25 / SWAY.frequency  # at the end of its way
-    flowing = moved(bed, leaning, LEAN, 0.15, work / f"flowing-{bed.count}.npz")
-    swayed = moved(bed, SWAY, 0.0, begun, work / f"swayed-{bed.count}.npz")
+    name = f"{bed.count}" if bed.along is None else f"spheres-{bed.count}"
+    flowing = moved(bed, leaning, LEAN, 0.15, work / f"flowing-{name}.npz")
+    swayed = moved(bed, SWAY, 0.0, begun, work / f"swayed-{name}.npz")
     omega = 2.0 * np.pi * SWAY.frequency
     shaking = Shaking(SWAY.amplitude * omega**2, omega, begun)
     return {
@@ -63,7 +64,7 @@ def every_situation(bed: Bed, work: Path) -> dict[str, Situation]:
 
 
 def moved(bed: Bed, motion: Tilt | Sway, since: float, course: float, path: Path) -> tuple[Bed, np.ndarray]:
-    """The bed after a `course` (s) of a motion that began `since` (s) ago, and the velocities (n, 2) m/s."""
+    """The bed after a `course` (s) of a motion that began `since` (s) ago, and the velocities (n, axes) m/s."""
 
     def make() -> Mapping[str, np.ndarray]:
         run = Simulation(bed.scene(material=GRAINS, motions=[(motion,)]), bed.places(), threads=1, arch="cpu")
@@ -115,7 +116,8 @@ def peers_on(one: Situation, dts: Mapping[str, float], course: float | Callable)
 
     def timing(run: Callable, dt: float) -> Callable[[], float]:
         many = max(1, round(length(course, dt) / dt))
-        bed, more = one.bed, {"sample_every": many, "velocity": one.velocity, **one.peers}
+        bed = one.bed
+        more = {"sample_every": many, "velocity": one.velocity, "along": bed.along, **one.peers}
         if one.velocity is not None:
             more["skin"] = SKIN_IN_MOTION
         task = Task(bed.position, bed.radius, bed.width, HEIGHT, SOFT, dt, many, **more)

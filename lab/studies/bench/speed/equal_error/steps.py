@@ -33,14 +33,14 @@ GRAINS = replace(ACETATE, restitution_speed=SPEED)
 SOFT = replace(GRAINS, young=GRAINS.young * SCALE)  # as a peer is told the material
 
 
-def steps_taken(codes: Mapping[str, Callable]) -> dict[str, dict[str, float]]:
-    """The step (s) of each code, and of the lab as LONGEST, by the rule that it follows from."""
-    usual = derived_step("standard")
+def steps_taken(codes: Mapping[str, Callable], bed: Bed) -> dict[str, dict[str, float]]:
+    """The step (s) of each code, and of the lab as LONGEST, by the rule that it follows from, on such a bed."""
+    usual = derived_step("standard", bed.along)
     found = {SAME: dict.fromkeys([*codes, LONGEST], usual)}
     for error, level in LEVEL_OF.items():
         longest = {name: longest_step(code, error) for name, code in codes.items()}
-        forced = min(longest[LAB], furthest(_scene().step_limits()))
-        own = {LAB: min(longest[LAB], derived_step(level)), LONGEST: forced}
+        forced = min(longest[LAB], furthest(_scene(bed.along).step_limits()))
+        own = {LAB: min(longest[LAB], derived_step(level, bed.along)), LONGEST: forced}
         found[f"{100.0 * error:g} % of restitution"] = longest | own
     return found
 
@@ -67,13 +67,13 @@ def longest_step(rebounds: Callable[[float], np.ndarray], error: float) -> float
     return found
 
 
-def derived_step(level: str) -> float:
-    """The step (s) that the lab derives at a level of accuracy for collisions at SPEED."""
-    return _scene().longest_step(LEVELS[level].longer_steps)
+def derived_step(level: str, along: float | None = None) -> float:
+    """The step (s) that the lab derives at a level of accuracy for collisions at SPEED, in a tank `along` (m) long."""
+    return _scene(along).longest_step(LEVELS[level].longer_steps)
 
 
-def _scene() -> Scene:
-    pair = Bed(np.full(2, 0.5 * DIAMETER), np.zeros((2, 2)), HEIGHT)
+def _scene(along: float | None = None) -> Scene:
+    pair = Bed(np.full(2, 0.5 * DIAMETER), np.zeros((2, 2 if along is None else 3)), HEIGHT, along)
     return pair.scene(material=GRAINS, gravity=0.0, start_speed=SPEED)
 
 
