@@ -15,6 +15,7 @@ from solvers.grains.checks import DEEPEST_OVERLAP
 from solvers.grains.given import Grains
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import closing_speed
+from solvers.machine.quantity import SPACE
 from solvers.scene import Scene
 from solvers.tank.outline import lining, raised
 from solvers.tank.tank import Tank
@@ -150,29 +151,34 @@ def _plates(preset: Preset) -> list[np.ndarray]:
 
 
 def _kinds(preset: Preset, shape: tuple[int, int]) -> dict:
-    """The kinds of grains, mixed at random, each repeat from its own seed; empty if there is only one kind."""
+    """The kinds of grains, as listed or mixed at random, each repeat from its own seed; empty if there is one kind."""
     if not preset.kinds:
         return {}
     worlds, count = shape
+    others = {"others": tuple(other.material for other in preset.others.values()), "unlike": _unlike(preset)}
+    if preset.grains.listed and preset.grains.listed.kind is not None:
+        return {"kind": np.stack([preset.grains.listed.kind.astype(int)] * worlds), **others}
     bounds = np.round(np.cumsum([kind.share for kind in preset.kinds.values()]) * count)
     ordered = (np.searchsorted(bounds, np.arange(count), side="right") + 1) % (len(preset.kinds) + 1)
     random = [np.random.default_rng([preset.run.seed + w, 1]) for w in range(worlds)]
-    against = [((0, k), other.against) for k, other in enumerate(preset.others.values(), start=1) if other.against]
-    return {
-        "kind": np.stack([r.permutation(ordered) for r in random]),
-        "others": tuple(other.material for other in preset.others.values()),
-        "unlike": tuple(against),
-    }
+    return {"kind": np.stack([r.permutation(ordered) for r in random]), **others}
+
+
+def _unlike(preset: Preset) -> tuple:
+    """The contact materials of [material] and other kinds, where they are given."""
+    others = enumerate(preset.others.values(), start=1)
+    return tuple(((0, k), other.against) for k, other in others if other.against)
 
 
 def _listed(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
     """Radii and positions of the listed grains, the same in all repeats, and their velocities if any."""
-    listed = np.array([preset.grains.listed] * preset.run.repeats)
-    velocity, spin = listed[..., 3:5], listed[..., 5]
+    grains, worlds, axes = preset.grains.listed, preset.run.repeats, preset.axes
     motion = {}
-    if np.any(velocity) or np.any(spin):
+    if grains.move:
+        velocity = np.stack([grains.velocity[:, :axes]] * worlds)
+        spin = np.stack([grains.spin if axes == SPACE else grains.spin[:, -1]] * worlds)
         motion = {"velocity": velocity, "spin": spin, "start_speed": closing_speed(velocity[0])}
-    return listed[..., 2], listed[..., :2], motion
+    return np.stack([grains.radius] * worlds), np.stack([grains.place[:, :axes]] * worlds), motion
 
 
 def check_softness(scene: Scene) -> None:

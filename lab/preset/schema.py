@@ -18,6 +18,7 @@ from solvers.machine import runtime  # noqa: F401 (first, since it loads Taichi 
 # isort: split
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS, stiffness_for
+from lab.preset.bed_file import check_listed_kinds
 from lab.preset.fields import Of, defaults_of, walk
 from lab.preset.kept.content import MATTERS
 from lab.preset.reader import check_keys, read
@@ -140,7 +141,7 @@ class Preset(WithBodies):
     def mean_diameter(self) -> float:
         """Mean diameter of the grains (m)."""
         if self.grains.listed:
-            return 2.0 * sum(grain[2] for grain in self.grains.listed) / len(self.grains.listed)
+            return 2.0 * float(self.grains.listed.radius.mean())
         return Sizes(self.classes).mean if self.classes else self.grains.diameter
 
     @cached_property
@@ -153,8 +154,8 @@ class Preset(WithBodies):
     def diameters(self) -> tuple[float, float]:
         """Smallest and largest possible diameter (m)."""
         if self.grains.listed:
-            radius = [grain[2] for grain in self.grains.listed]
-            return 2.0 * min(radius), 2.0 * max(radius)
+            radius = self.grains.listed.radius
+            return 2.0 * float(radius.min()), 2.0 * float(radius.max())
         return self.sizes.range
 
     @cached_property
@@ -265,6 +266,8 @@ def _check_of_grains(preset: Preset) -> None:
     check_dissipation(preset.wall, "wall", needed=False)
     check_cohesion(preset.contact.cohesion, preset.material)
     check_kinds(preset.kinds, preset.material)
+    if preset.grains.listed:
+        check_listed_kinds(preset.grains.listed, len(preset.kinds))
 
 
 def _size_key(preset: Preset) -> str:

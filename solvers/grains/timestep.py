@@ -38,20 +38,28 @@ def watched(smallest: float, speed: float, count: int, shaped: bool) -> Limit:
 
 
 def closing_speed(velocity: np.ndarray) -> float:
-    """Highest closing speed (m/s) of n grains with velocities (n, 2) m/s: of any two, or of one and a wall at rest.
+    """Highest closing speed (m/s) of n grains with velocities (n, axes) m/s: of any two, or of one and a wall at rest.
 
     The two velocities farthest apart are corners of the convex hull of all.
     """
-    from scipy.spatial import ConvexHull, QhullError  # slow to import, and only listed beds need it
-
-    corners = np.unique(velocity, axis=0)
-    try:
-        corners = corners[ConvexHull(corners).vertices]
-    except (QhullError, ValueError):  # collinear or fewer than three: the two ends are farthest apart
-        along = (corners - corners[0]) @ (corners[np.linalg.norm(corners - corners[0], axis=1).argmax()] - corners[0])
-        corners = corners[[along.argmin(), along.argmax()]]
+    corners = _corners(np.unique(velocity, axis=0))
     fastest = np.linalg.norm(velocity, axis=1).max()
     return float(max([fastest, *(np.linalg.norm(corners - one, axis=1).max() for one in corners)]))
+
+
+def _corners(points: np.ndarray) -> np.ndarray:
+    """The corners of the convex hull of points (n, axes), which may lie in a plane or on a line."""
+    from scipy.spatial import ConvexHull, QhullError  # slow to import, and only listed beds need it
+
+    try:
+        return points[ConvexHull(points).vertices]
+    except (QhullError, ValueError):  # too few or flat: the same in the plane, or on the line, that they lie in
+        away = points - points[0]
+        ways = np.linalg.svd(away, full_matrices=False)[2]
+        if points.shape[1] == 3 and len(points) > 2 and np.linalg.matrix_rank(away) == 2:
+            return points[ConvexHull(away @ ways[:2].T).vertices]
+        along = away @ ways[0]
+        return points[[along.argmin(), along.argmax()]]
 
 
 def share_to_lengthen(derived: float, slowest: float, times: float) -> float:

@@ -226,7 +226,7 @@ def _grains(preset: object) -> dict:
     """The grains, if there are any; where a file lists them, all else is as if it were not said."""
     if preset.grains is None:
         return {}
-    grains, own = preset.grains, {"diameter": preset.mean_diameter, "listed": preset.grains.listed}
+    grains, own = preset.grains, {"diameter": preset.mean_diameter, "listed": bool(preset.grains.listed)}
     if grains.listed:
         unsaid = asdict(replace(type(grains)(), reuse_bed=grains.reuse_bed))
         return unsaid | own | {"bed": grains.bed.name, "count": len(grains.listed)}

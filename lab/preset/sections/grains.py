@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.bed_file import MOST, MOTION, NEEDED, Grain, check_listed, check_radii, listed
+from lab.preset.bed_file import MOST, NEEDED, OPTIONAL, ListedGrains, check_listed, check_radii, listed
 from lab.preset.fields import Columns, Table
 from lab.preset.outline import Point, area, simple_polygon
 from lab.preset.sections.tank import Tank
@@ -77,8 +77,11 @@ class Grains:
     ] = None
     bed: Annotated[
         Table | None,
-        Columns(NEEDED, MOTION, MOST),
-        Doc("CSV file that lists the grains: y, z, radius and any of vy, vz, omega, in SI."),
+        Columns(NEEDED, OPTIONAL, MOST),
+        Doc(
+            "CSV file that lists the grains: y, z, radius and any of vy, vz, omega, in SI, in space x, vx, omega_y and "
+            "omega_z, too; kind: 0 for [material], then the numbers of [kinds]."
+        ),
     ] = None
     reuse_bed: Annotated[bool, Doc("Keep settled beds, and reuse them.")] = True
     settled_as: Annotated[
@@ -86,9 +89,9 @@ class Grains:
     ] = "outlines"
 
     @cached_property
-    def listed(self) -> tuple[Grain, ...]:
-        """y, z, radius (m), v_y, v_z (m/s), ω (rad/s) of each grain of the file; none without one."""
-        return listed(self.bed) if self.bed is not None else ()
+    def listed(self) -> ListedGrains | None:
+        """The grains of the file; None without one."""
+        return listed(self.bed) if self.bed is not None else None
 
     @property
     def normal(self) -> bool:
@@ -145,7 +148,7 @@ def check_room(
     the tank moves; `scale`: the factor on their moduli.
     """
     if grains.listed:
-        check_listed(grains.listed, tank.corners, moving=not settle, scale=scale)
+        check_listed(grains.listed, tank, moving=not settle, scale=scale)
         return
     if (grains.count is None) == (grains.depth is None):
         got = "neither" if grains.count is None else "both"

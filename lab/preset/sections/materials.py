@@ -41,7 +41,9 @@ def _optional(hint: object) -> object:
 Wall = make_dataclass("Wall", _properties("density"), bases=(Over,), frozen=True)
 """What of a wall's material is not as that of the grains."""
 
-Share = Annotated[float, Interval(gt=0, lt=1), Doc("Share of these grains by number.")]
+Share = Annotated[
+    float, Interval(gt=0, lt=1), Doc("Share of these grains by number; a column `kind` of grains.bed replaces it.")
+]
 Against = Annotated[Wall | None, Doc("How these grains touch the rest; by the mean of the two materials without it.")]
 Kind = make_dataclass(
     "Kind", [("share", Share), *_properties(), ("against", Against, None)], bases=(Over,), frozen=True

@@ -49,8 +49,8 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
         yield "run.integrator", f"in space it is {' or '.join(INTEGRATORS)} (got {preset.run.integrator})"
     if grains is None:
         return
-    if grains.bed is not None:
-        yield "grains.bed", f"a list of grains is of the plane alone; give count or depth, or leave out {key_of_space}"
+    if grains.bed is not None and "x" not in grains.listed.columns:
+        yield "grains.bed", f"in space it has a column x, too; add it, or leave out {key_of_space}"
     if grains.surface == "undisturbed":
         yield "grains.surface", "a bed is levelled in the plane alone; take slightly-disturbed or disturbed"
     largest = preset.diameters[1]

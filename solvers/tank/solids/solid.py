@@ -4,6 +4,7 @@ Without one a scene is plane. Points (n, 3) m have the order y, z, x. Section co
 which the outline is drawn.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,19 @@ class Prism:
         """The section coordinates of points."""
         return points[:, :2]
 
+    def out_of_section(self, ways: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Vectors (n, 3) at points (n, 3) of those (n, 2) in the section."""
+        return np.column_stack([ways, np.zeros(len(points))])
+
+    def ends(self, points: np.ndarray, radius: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """For each end wall the direction (n, 3) away from it and the overlaps (n,) m of spheres at points (n, 3)."""
+        for side in () if self.periodic else (-1.0, 1.0):
+            yield np.tile([0.0, 0.0, -side], (len(points), 1)), radius - 0.5 * self.along + side * points[:, 2]
+
+    def between_ends(self, points: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
+        """Which points (n, 3) are at least `reach` (m) from both end walls; of a slice, which are in it."""
+        return np.abs(points[:, 2]) <= 0.5 * self.along - (0.0 if self.periodic else np.asarray(reach) * (1.0 - 1e-9))
+
     def volume(self, outline: np.ndarray, depth: float) -> float:
         """Volume (m³) up to `depth` (m) above the lowest point."""
         return self.along * area_below(outline, depth)
@@ -61,6 +75,19 @@ class Turned:
     def section(self, points: np.ndarray) -> np.ndarray:
         """The section coordinates of points: the distance from the axis, and z."""
         return np.column_stack([np.hypot(points[:, 0], points[:, 2]), points[:, 1]])
+
+    def out_of_section(self, ways: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Vectors (n, 3) at points (n, 3) of those (n, 2) in the section."""
+        away = np.maximum(np.hypot(points[:, 0], points[:, 2]), 1e-300)
+        return np.column_stack([ways[:, 0] * points[:, 0] / away, ways[:, 1], ways[:, 0] * points[:, 2] / away])
+
+    def ends(self, points: np.ndarray, radius: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """What is turned has no end walls."""
+        return iter(())
+
+    def between_ends(self, points: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
+        """All points (n, 3): what is turned has no end walls."""
+        return np.ones(len(points), dtype=bool)
 
     def volume(self, outline: np.ndarray, depth: float) -> float:
         """Volume (m³) up to `depth` (m) above the lowest point, by slices of the section's width."""
