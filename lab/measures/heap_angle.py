@@ -7,10 +7,13 @@ grain that is reached from below without a gap (`column_tops`), so that grains i
 column is the apex. The flank on either side consists of the columns between LOW and HIGH of the apex's height above the
 base, around the half height at which the Code measures. This leaves out the foot with its stray grains and the top,
 which the jet or the funnel's tip makes blunt. The angle is that of the Theil-Sen line (Sen 1968) through a flank of at
-least five columns. A heap lower than LEAST has no angle.
+least five columns. A heap lower than LEAST has no angle. In a tank that is turned about the axis z the heap has its
+apex on that axis, and a flank in each of SECTORS sectors of azimuth, whose distance from the axis is cut into columns.
 
-heap_angle_port, heap_angle_starboard: of the flanks, positive where the surface falls away from the apex.
-heap_angle: the mean of both. Error: half the 68 % confidence interval of the slope (Sen), as an angle.
+heap_angle_port, heap_angle_starboard: of the flanks of a heap in a plane or under a slit, positive where the surface
+falls away from the apex. heap_angle: the mean of all. Error: half the 68 % confidence interval of the slope (Sen), as
+an angle.
+heap_angle_spread: standard deviation of the angles of the sectors about their mean.
 heap_height: of the apex above the base. Error: none of its own, but a grain more or less is a diameter.
 """
 
@@ -22,11 +25,13 @@ from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, level
 from lab.measures.outlet import Outlet, find_outlet, passed
 from lab.measures.surface_slope import inclination
 from lab.measures.value import Value, over_worlds
-from lab.measures.wave import column_tops
+from lab.measures.wave import column_tops, half_along
 from lab.recording import Recording
+from solvers.tank.solids.solid import Turned
 
 OF = "grains"
 LOW, HIGH = 0.2, 0.8  # of the apex's height
+SECTORS = 8
 LEAST = 5.0  # mean diameters high: a lower heap has too few grains for a slope
 MISSING = "no heap"
 
@@ -37,43 +42,78 @@ def applies(recording: Recording) -> bool:
 
 
 def measure(recording: Recording) -> dict[str, Value]:
-    """heap_angle, heap_angle_port, heap_angle_starboard (deg) and heap_height (d)."""
+    """heap_angle, heap_angle_port, heap_angle_starboard or heap_angle_spread (deg), and heap_height (d)."""
     flanks, heights = heap(recording, find_outlet(recording), len(recording.frames["time"]) - 1)
     angles, errors = np.degrees(flanks[:, :, 0]), np.degrees(flanks[:, :, 1])
-    found = {"heap_angle": _angle(angles.mean(axis=1), 0.5 * np.hypot(*errors.T))}
-    for side, name in enumerate(("port", "starboard")):
-        found[f"heap_angle_{name}"] = _angle(angles[:, side], errors[:, side])
+    found = {"heap_angle": _angle(angles.mean(axis=1), np.linalg.norm(errors, axis=1) / angles.shape[1])}
+    if is_turned(recording):
+        found["heap_angle_spread"] = over_worlds(angles.std(axis=1, ddof=1), "deg", missing=MISSING)
+    else:
+        for side, name in enumerate(("port", "starboard")):
+            found[f"heap_angle_{name}"] = _angle(angles[:, side], errors[:, side])
     found["heap_height"] = over_worlds(heights / recording.mean_diameter, "d", missing="no grain below the outlet")
     return found
 
 
+def is_turned(recording: Recording) -> bool:
+    """Whether the tank is turned about the axis z."""
+    return isinstance(recording.preset.tank.solid, Turned)
+
+
 def heap(recording: Recording, outlet: Outlet, frame: int) -> tuple[np.ndarray, np.ndarray]:
-    """Angle and its error (W, 2, 2), rad, of the port and the starboard flank in a frame, and heights (W,), m."""
+    """Angle and its error (W, flanks, 2), rad, of each flank in a frame, and heights (W,), m.
+
+    The flanks are port and starboard, or the sectors by azimuth.
+    """
     position = recording.frames["position"][frame].astype(float)
-    lips = outlet.lips_at(recording, frame)
-    flanks, heights = np.full((recording.worlds, 2, 2), np.nan), np.full(recording.worlds, np.nan)
+    lips, turned = outlet.lips_at(recording, frame), is_turned(recording)
+    flanks = np.full((recording.worlds, SECTORS if turned else 2, 2), np.nan)
+    heights = np.full(recording.worlds, np.nan)
     for world in range(recording.worlds):
-        y, z = _surface(position[world], recording.radius[world], recording.outline, lips[world])
-        if not len(z):
+        seen = position[world], recording.radius[world], recording.outline, lips[world]
+        profiles = sector_profiles(*seen) if turned else _flanks(*_surface(*seen, half_along(recording)))
+        if not any(len(z) for _, z in profiles):
             continue
-        apex, heights[world] = y[np.argmax(z)], z.max()
-        if heights[world] > LEAST * recording.mean_diameter[world]:
-            for side, sign in enumerate((-1.0, 1.0)):
-                flank = (sign * (y - apex) > 0) & (z > LOW * z.max()) & (z < HIGH * z.max())
-                slope, error = inclination(y[flank], z[flank])
-                flanks[world, side] = -sign * slope, error
+        heights[world] = top = max(z.max(initial=0.0) for _, z in profiles)
+        if top > LEAST * recording.mean_diameter[world]:
+            for number, (away, z) in enumerate(profiles):
+                flank = (away > 0) & (z > LOW * top) & (z < HIGH * top)
+                slope, error = inclination(away[flank], z[flank])
+                flanks[world, number] = -slope, error
     return flanks, heights
 
 
+Profile = tuple[np.ndarray, np.ndarray]  # distances from the apex and heights (k,), m
+
+
+def _flanks(y: np.ndarray, z: np.ndarray) -> list[Profile]:
+    """The profiles to port and starboard of the highest column."""
+    if not len(z):
+        return []
+    return [(sign * (y - y[np.argmax(z)]), z) for sign in (-1.0, 1.0)]
+
+
+def sector_profiles(position: np.ndarray, radius: np.ndarray, outline: np.ndarray, lips: np.ndarray) -> list[Profile]:
+    """The profiles of a heap about the axis z, a sector of azimuth each, of grains at position (n, 3) m."""
+    held = np.isfinite(position).all(axis=1)
+    sector = (SECTORS * (np.arctan2(position[held, 2], position[held, 0]) / (2.0 * np.pi) + 0.5)).astype(int)
+    away = np.column_stack([np.hypot(position[held, 0], position[held, 2]), position[held, 1]])
+    size = radius[held]
+    half, lip = (np.column_stack([np.maximum(line[:, 0], 0.0), line[:, 1]]) for line in (outline, lips))
+    return [_surface(away[sector == number], size[sector == number], half, lip, None) for number in range(SECTORS)]
+
+
 def _surface(
-    position: np.ndarray, radius: np.ndarray, outline: np.ndarray, lips: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+    position: np.ndarray, radius: np.ndarray, outline: np.ndarray, lips: np.ndarray, half: float | None
+) -> Profile:
     """Middles of the columns (k,), m, that the heap has, and its height (k,) above the base there."""
+    if not len(position):
+        return np.empty(0), np.empty(0)
     middle, level = lips.mean(axis=0)
     base = base_below(outline, middle, level)
     low = position[:, 1] < level
     diameter = 2 * radius.mean()
-    tops = column_tops(position[low], radius[low], outline, diameter) - base
+    tops = column_tops(position[low], radius[low], outline, diameter, half) - base
     left, right = outline[:, 0].min(), outline[:, 0].max()
     columns = left + (np.arange(len(tops)) + 0.5) * (right - left) / len(tops)
     held = tops > 0.5 * diameter

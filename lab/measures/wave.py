@@ -1,8 +1,9 @@
 """The wave on the free surface of a shaken cargo, from the picture frames, in the tank's frame.
 
-The tank's width is cut into columns about two mean diameters wide. The surface of a column is the top of the highest
-grain that is reached from below without a gap of more than GAP diameters between tops, so that grains in the air do
-not count. An elevation is the height of the surface minus its height in the first frame, that of the settled bed.
+The tank's width is cut into columns about two mean diameters wide, in space its length as well. The surface of a column
+is the top of the highest grain that is reached from below without a gap of more than GAP diameters between tops, so
+that grains in the air do not count; in space it is the mean over the columns behind each other. An elevation is the
+height of the surface minus its height in the first frame, that of the settled bed.
 
 wave_port, wave_middle, wave_starboard: sqrt(2) times the standard deviation in time of the elevation, averaged over
 the tenth of the width at the port wall, in the middle, and at the starboard wall: the amplitude of a sinusoid of the
@@ -93,16 +94,31 @@ def surface_columns(recording: Recording, frame: int) -> np.ndarray:
     """Height (W, C) of the free surface in each column from port to starboard, m; NaN where there is no grain."""
     position = recording.frames["position"][frame].astype(float)
     diameter = float(recording.mean_diameter.mean())  # of all beds, so that their columns are as many
-    beds = zip(position, recording.radius, strict=True)
-    return np.array([column_tops(*bed, recording.outline, diameter) for bed in beds])
+    beds, half = zip(position, recording.radius, strict=True), half_along(recording)
+    return np.array([column_tops(*bed, recording.outline, diameter, half) for bed in beds])
 
 
-def column_tops(position: np.ndarray, radius: np.ndarray, outline: np.ndarray, diameter: float) -> np.ndarray:
-    """Height (C,) of the surface of grains at position (n, 2), m, in columns about two diameters (m) wide."""
+def half_along(recording: Recording) -> float | None:
+    """How far (m) the tank reaches along x to either side; None in the plane."""
+    solid = recording.preset.tank.solid
+    return solid.half(recording.outline) if solid else None
+
+
+def column_tops(
+    position: np.ndarray, radius: np.ndarray, outline: np.ndarray, diameter: float, half: float | None = None
+) -> np.ndarray:
+    """Height (C,) of the surface of grains at position (n, axes), m, in columns about two diameters (m) wide.
+
+    In space the tank reaches to ±`half` (m) along x, and the heights of the columns behind each other are averaged.
+    """
     (left, floor), (right, _) = outline.min(axis=0), outline.max(axis=0)
     count = max(3, int((right - left) / (COLUMN * diameter)))
+    deep = 1 if half is None else max(1, int(2.0 * half / (COLUMN * diameter)))
     held = (position[:, 0] > left) & (position[:, 0] < right) & (position[:, 1] > floor)
     column = np.minimum((count * (position[held, 0] - left) / (right - left)).astype(int), count - 1)
+    if deep > 1:
+        behind = (deep * (position[held, 2] + half) / (2.0 * half)).astype(int)
+        column = column * deep + np.clip(behind, 0, deep - 1)
     top = position[held, 1] + radius[held]
     order = np.lexsort((top, column))
     column, top = column[order], top[order]
@@ -110,9 +126,9 @@ def column_tops(position: np.ndarray, radius: np.ndarray, outline: np.ndarray, d
     gap = np.diff(top, prepend=0.0) > GAP * diameter
     parted = np.cumsum(gap & ~first)
     bound = parted == parted[np.maximum.accumulate(np.where(first, np.arange(len(top)), 0))]
-    tops = np.full(count, np.nan)
+    tops = np.full(count * deep, np.nan)
     np.fmax.at(tops, column[bound], top[bound])
-    return tops
+    return tops if deep == 1 else finite_mean(tops.reshape(count, deep))
 
 
 def finite_mean(values: np.ndarray) -> np.ndarray:

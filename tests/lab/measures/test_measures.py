@@ -688,4 +688,5 @@ def test_waves_of_beds_with_unequal_grains_have_equal_columns():
     recording = SimpleNamespace(
         frames={"position": position}, radius=radius, mean_diameter=2 * radius.mean(axis=1), outline=box(0.06, 0.05)
     )
+    recording.preset = SimpleNamespace(tank=SimpleNamespace(solid=None))
     assert surface_columns(recording, 0).shape == (2, 9)
