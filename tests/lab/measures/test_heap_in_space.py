@@ -48,7 +48,7 @@ def test_a_cone_has_its_slope_in_all_directions(slope):
     assert len(angles) == SECTORS
     length = 0.6 * 0.06 / np.tan(np.radians(slope))
     assert angles.mean() == pytest.approx(slope, abs=np.degrees(RADIUS / length))
-    assert heights[0] == pytest.approx(0.06, abs=2.0 * RADIUS)
+    assert heights[0] == pytest.approx(0.06, abs=4.0 * RADIUS)  # the tip is too narrow for a grain
 
 
 def test_a_heap_that_leans_is_steeper_on_one_side():
