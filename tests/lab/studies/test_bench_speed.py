@@ -274,8 +274,8 @@ def test_software_devices_are_named_and_run_only_small_beds(tmp_path, monkeypatc
     monkeypatch.setattr(runtime, "choose_arch", lambda arch, precision: arch)
     monkeypatch.setattr(gpu, "device", lambda arch: Device("a painter", software=True))
     text = gpu.BENCH.run((), tmp_path, fast=False).read_text()
-    assert text.count("Device: a painter, which is software on the processor.") == 3
-    assert text.count("Not run: there is no graphics processor here, and software is none") == 3
+    assert text.count("Device: a painter, which is software on the processor.") == len(gpu.STUDIES)
+    assert text.count("Not run: there is no graphics processor here, and software is none") == len(gpu.STUDIES)
 
 
 def test_a_deviating_grain_is_reported_in_diameters():

@@ -1,4 +1,4 @@
-"""cargolab bench gpu: the same grains and water on GPUs and on the CPU, compared in results and in speed."""
+"""cargolab bench gpu: the same grains, spheres and water on GPUs and on the CPU, compared in results and in speed."""
 
 from functools import partial
 from pathlib import Path
@@ -12,12 +12,12 @@ from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
 
 ARCHES = {"cuda": ("f64", "mixed", "f32"), "vulkan": ("f32",)}
-MATTERS = {"grains": grains, "water": water}
-STUDIES = (("cuda", "grains"), ("cuda", "water"), ("vulkan", "grains"))
+MATTERS = {"grains": grains.DISCS, "spheres": grains.SPHERES, "water": water}
+STUDIES = (("cuda", "grains"), ("cuda", "spheres"), ("cuda", "water"), ("vulkan", "grains"), ("vulkan", "spheres"))
 
 
 def study(page: Page, work: Path, fast: bool, arch: str, matter: str) -> None:
-    """Add the section on grains or water on one kind of device to the page."""
+    """Add the section on a matter on one kind of device to the page."""
     precisions = ARCHES[arch]
     page.section(f"{matter.capitalize()} on {arch.upper() if arch == 'cuda' else arch.capitalize()}")
     found, why_not = there(arch, precisions[-1])
@@ -47,10 +47,11 @@ def there(arch: str, precision: str) -> tuple[Device | None, str]:
     return found, "" if found else f"the driver of {arch} tells of no device."
 
 
-ABOUT = """Grains and water particle by particle, each on its own, with a launch a step (schedule per-grain): first
-whether a device gives what the processor gives, then how fast it is. M stands for a million particle-steps a second, of
-grains or of particles of water; speeds are medians of several turns. What was not run on a graphics processor is
-marked so. Water runs on CUDA alone: Taichi 1.7.4 cannot compile its kernels for Vulkan."""
+ABOUT = """Grains in the plane, spheres in space and water, particle by particle, each on its own, with a launch a step
+(schedule per-grain): first whether a device gives what the processor gives, then how fast it is. M stands for a
+million particle-steps a second, of grains or of particles of water; speeds are medians of several turns. What was not
+run on a graphics processor is marked so. Water runs on CUDA alone: Taichi 1.7.4 cannot compile its kernels for
+Vulkan."""
 BENCH = Bench(
     "gpu",
     "Graphics processors",
