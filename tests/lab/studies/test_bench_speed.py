@@ -56,7 +56,7 @@ def test_ratios_are_within_a_round_and_the_first_round_is_a_warm_up():
 
 def test_a_bed_is_settled_once(tmp_path, monkeypatch):
     settled = [{"radius": np.ones(COUNT), "position": np.zeros((COUNT, 2))}]
-    monkeypatch.setattr(beds, "_settled", lambda count, width, seed: settled.pop())
+    monkeypatch.setattr(beds, "_settled", lambda *_: settled.pop())
     first = settled_bed(tmp_path, COUNT, WIDTH)
     np.testing.assert_array_equal(settled_bed(tmp_path, COUNT, WIDTH).radius, first.radius)
     assert [path.name for path in tmp_path.iterdir()] == ["bed-40-24-1.npz"]
