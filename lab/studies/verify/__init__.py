@@ -19,10 +19,11 @@ from lab.studies.verify import (
     sameness,
     water,
 )
-from lab.studies.verify.impacts import chung_ooi, oblique, restitution
+from lab.studies.verify.impacts import chung_ooi, in_space, oblique, restitution
 
 MODULES = (
     chung_ooi,
+    in_space,
     restitution,
     oblique,
     friction,
@@ -45,7 +46,7 @@ SUITE = Suite(
     water.TEXTS,
 )
 # Cases whose step is a preset's: those of `impacts` have steps of draft beside the derived ones in any case.
-BY_LEVEL = tuple(case for module in MODULES if module not in (*MODULES[:3], water) for case in module.CASES)
+BY_LEVEL = tuple(case for module in MODULES if module not in (*MODULES[:4], water) for case in module.CASES)
 
 
 def suite_at(level: str) -> Suite:

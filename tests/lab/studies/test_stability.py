@@ -9,8 +9,10 @@ from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS
 from lab.studies.bench import stability
 from lab.studies.bench.stability import limit_case
-from lab.studies.bench.stability.limit_map import Limit, contacts, exact_limit, grows, limits, longest, packing, scene
+from lab.studies.bench.stability.limit_map import Limit, grows, limits, longest, scene
+from lab.studies.bench.stability.packings import MASS, packing
 from lab.studies.suite import carried_out
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.simulation import Simulation
 
 
@@ -31,7 +33,9 @@ def test_derived_steps_of_the_other_integrators_are_stable(case):
 
 
 def test_an_unknown_name_gives_one_sentence(tmp_path):
-    with pytest.raises(LabError, match=r"^there is no case wedge-shaped; there are map-verlet, .*map-gear\.$"):
+    with pytest.raises(
+        LabError, match=r"^there is no case wedge-shaped; there are map-verlet, .*map-gear, map-space-verlet, .*$"
+    ):
         stability.SUITE.run(("wedge-shaped",), tmp_path, False)
     assert not list(tmp_path.iterdir())
     (tmp_path / "stability.json").write_text("[1, 2")
@@ -44,7 +48,7 @@ def test_a_step_that_is_not_stable_fails(true, failed, forced, monkeypatch):
     """In derived steps, of which 3 may be forced; 2/ω is what was found or, in the last line, a tenth longer."""
     laws = "verlet", "linear", "none", "undamped"
     alike = [Limit(*laws, 1.0, 3.0, true, exact) for exact in (None, true, 1.1 * true)]
-    monkeypatch.setattr(limit_case, "found", lambda integrator, fast: alike)
+    monkeypatch.setattr(limit_case, "found", lambda integrator, fast, axes: alike)
     found = limit_case.check(True, "verlet")
     for said, failing in (("missing of a derived step", failed), ("missing of 3 derived steps", forced)):
         assert [line.passed for line in found.lines if said in line.quantity] == [not failing] * 3
@@ -60,15 +64,31 @@ def test_bisection_finds_a_limit_above_and_below_and_none():
 
 
 @pytest.mark.slow
-def test_packing_is_in_equilibrium_and_explodes_beyond_its_limit():
+@pytest.mark.parametrize("axes", [PLANE, SPACE])
+def test_packing_is_in_equilibrium_and_explodes_beyond_its_limit(axes):
     """At a stable step no grain moves by as much as a thousandth of an overlap; a little beyond 2/ω they fly apart."""
-    made = scene([1.0], "verlet", "linear", "none")
-    places = packing("linear")[1][None]
+    of = packing("linear", axes)
+    made = scene(of, [1.0], "verlet", "linear", "none")
+    places = of.places[None]
     run = Simulation(made, places, 1, arch="cpu")
-    assert not grows(run, places, 0, 0.97 * exact_limit("linear"))
-    assert np.abs(run.snapshot()["position"] - places).max() < 1e-3 * contacts("linear")[0].overlap
-    assert grows(run, places, 0, 1.03 * exact_limit("linear"))
+    assert not grows(run, places, 0, 0.97 * of.exact_limit())
+    assert np.abs(run.snapshot()["position"] - places).max() < 1e-3 * of.springs.overlap
+    assert grows(run, places, 0, 1.03 * of.exact_limit())
     run.close()
+
+
+@pytest.mark.parametrize("normal", ["hertz-viscoelastic", "linear"])
+def test_grains_inside_a_block_have_twelve_contacts_nearly_as_deep_as_the_impact(normal):
+    """In an endless crystal m ω² is 8 slopes of a contact less what its pressure takes; a block has longer waves."""
+    of = packing(normal, SPACE)
+    contacts = np.zeros(len(of.places), int)
+    for i, j, *_ in of._pairs():
+        contacts[[i, j]] += 1
+    inside = np.linalg.norm(of.places - of.places.mean(axis=0), axis=1) < 2.1 * 1.5e-3
+    assert inside.sum() == 13 and (contacts[inside] == 12).all()
+    slope = of.springs.power * of.springs.force / of.springs.overlap
+    stiffest = (2.0 / of.exact_limit()) ** 2 * MASS / slope
+    assert 6.0 < stiffest < 8.0
 
 
 @pytest.mark.slow

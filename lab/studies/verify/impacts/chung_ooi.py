@@ -82,12 +82,15 @@ def slipped(curve: Meetings) -> np.ndarray:
 
 
 def errors(name: str, fast: bool) -> dict[str, np.ndarray]:
-    """Largest errors (lengths,) over a curve and all phases: of the slip and R ω as shares of the slip at the start.
+    """The largest errors of a curve, as `largest_errors` has them."""
+    return largest_errors((oblique() | given_restitutions())[name], met(name, fast)[: 1 if fast else None])
+
+
+def largest_errors(curve: Meetings, found: np.ndarray) -> dict[str, np.ndarray]:
+    """Largest errors (lengths,) over all meetings and phases: of the slip and R ω as shares of the slip at the start.
 
     Of the speed away as a share of it.
     """
-    curve = (oblique() | given_restitutions())[name]
-    found = met(name, fast)[: 1 if fast else None]
     expected, axes = curve.expected, (1, 2)
     wrong = {"speed away": np.abs(found[..., 1] / expected[:, 1] - 1.0).max(axis=axes)}
     if not curve.friction:
