@@ -31,9 +31,9 @@ class Scene:
 
     - `outline` (m, 2) m of the tank, counter-clockwise; `open_edges`: its edges without a wall, by their first corners;
       `parts`: plates that move in the tank.
-    - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
-      by default all; `more_tanks` stand beside it, or are rooms of a part that floats free (`Tank`). Grains are in the
-      first tank, or in such rooms if there are any.
+    - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m, in space its own length;
+      `length` (m) along a ship, by default all; `more_tanks` stand beside it, or are rooms of a part that floats free
+      (`Tank`). Grains are in the first tank, or in such rooms if there are any.
     - `solid`: what the outline stands for in space; None: the scene is plane.
     - `matters`: what the tanks hold, at most one of each kind of `solvers.matters`.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
@@ -99,7 +99,8 @@ class Scene:
     @property
     def tanks(self) -> tuple[Tank, ...]:
         """All tanks of a world, the first one included."""
-        suited = next((matter.thickness for matter in self.matters if matter.thickness), BARE_THICKNESS)
+        found = (one.thickness for one in (self.solid, *self.matters) if one and one.thickness)
+        suited = next(found, BARE_THICKNESS)
         thickness = self.thickness or suited
         return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
 

@@ -28,7 +28,7 @@ from lab.naval import sheet
 from lab.naval.condition import Condition, condition
 from lab.recording import Recording
 from solvers.machine.errors import Unavailable
-from solvers.machine.quantity import ROLL
+from solvers.machine.quantity import PLANE, ROLL
 from solvers.ship.cargo import ONE, level_area
 from solvers.ship.hydrostatics import Loading, balanced_heave
 from solvers.ship.naval.grain_code import ASSUMED, residual
@@ -122,7 +122,7 @@ def _shift(path: str, _rows: int) -> Shift | None:
 
     with open_recording(path) as recording:
         preset, vessel = recording.preset, vessel_of(recording.path)
-        centre = np.array(recording.series["centre_of_mass"], dtype=float)
+        centre = np.array(recording.series["centre_of_mass"], dtype=float)[..., :PLANE]
         if vessel is None or not len(centre):
             return None
         mass = float(grain_mass(recording).sum(axis=1).mean())

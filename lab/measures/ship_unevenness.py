@@ -1,8 +1,9 @@
 """How uneven the surface of a ship's cargo lies, as the IMSBC Code asks of dry cargoes that do not cohere (section 5).
 
-The hold is cut into columns two mean diameters wide; the top of the highest grain in each is a level of the surface,
-and the mean of three neighbouring levels evens out single grains. Unevenness Δh is the difference between the highest
-and the lowest of these means, square to the deck, wherever there is cargo; at the full scale if the preset has one.
+The hold is cut into columns two mean diameters wide, in space over all its length; the top of the highest grain in
+each is a level of the surface, and the mean of three neighbouring levels evens out single grains. Unevenness Δh is the
+difference between the highest and the lowest of these means, square to the deck, wherever there is cargo; at the full
+scale if the preset has one.
 
 unevenness: as the cargo settled, before the ship moves. final_unevenness: in the last picture; largest_unevenness: in
 any picture, which thrown grains can raise. A level is uncertain by half a mean diameter, which the note tells.

@@ -17,7 +17,7 @@ from lab.paint.scene.drive import drive_text
 from lab.paint.scene.moves import moved_line, on_the_way
 from lab.paint.sea import Rail, Sea
 from lab.paint.space.scene import scene_in_space
-from lab.paint.space.stance import flat, lengths
+from lab.paint.space.stance import lengths
 from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
@@ -25,6 +25,7 @@ from lab.recording.contacts.again import Again
 from lab.recording.ship_end import ends
 from solvers.grains.pressing import Pressing
 from solvers.grains.quantities import FRAMES
+from solvers.machine.quantity import flat
 
 RATES = {"position": "velocity", "water_position": "water_velocity"}  # rates of change among the recorded quantities
 LEAST = 1e-9  # share of the time between two frames

@@ -44,6 +44,16 @@ def freedoms(axes: int) -> tuple[str, ...]:
     return (*directions(axes), *(rotations(axes) or ROTATIONS[-1:]))
 
 
+def in_plane(axes: int) -> tuple[int, ...]:
+    """Which of the freedoms of a body are those of the plane, by their numbers."""
+    return tuple(freedoms(axes).index(name) for name in freedoms(PLANE))
+
+
+def flat(values: np.ndarray) -> np.ndarray:
+    """The freedoms of the plane (..., 3) of poses, rates or loads in the plane (..., 3) or in space (..., 6)."""
+    return values if values.shape[-1] == len(freedoms(PLANE)) else values[..., in_plane(SPACE)]
+
+
 # What runs over components that many quantities have
 DIMENSIONS = {
     named(axes): what for axes in (PLANE, SPACE) for named, what in ((directions, "axis"), (freedoms, "freedom"))

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import taichi as ti
 
-from solvers.machine.quantity import PLANE, freedoms, parted, places
+from solvers.machine.quantity import PLANE, freedoms, in_plane, parted, places
 from solvers.machine.state import Axis, State
 from solvers.motion.free import NOT_FREE
 from solvers.tank import quantities as tank
@@ -29,9 +29,7 @@ class Sampler:
     ):
         self.worlds, self.carrier, self.parts, self.loads = worlds, carrier, parts, tuple(loads)
         self.exact, self.pieces = arrays.exact, pieces
-        named = freedoms(axes)
-        self.freedoms = len(named)
-        self.moved = tuple(named.index(name) for name in freedoms(PLANE))  # those in which carriers move
+        self.freedoms, self.moved = len(freedoms(axes)), in_plane(axes)  # all, and those in which carriers move
         self.quantities = tuple(one.within(axes) for one in tank.SERIES)
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)

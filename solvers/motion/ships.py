@@ -20,7 +20,8 @@ from solvers.tank.load import Load
 class Ships(Rates):
     """The carrier of tanks in W ships, with the interface of `Prescribed`; who derives from it says how they `move`.
 
-    The load is that of `Load.of_world`, per metre of a ship's length. `every` is the number of steps in an interval.
+    The load is that of `Load.of_world`, per metre of a ship's length; in space she takes its forces along y and z and
+    its moment about x. `every` is the number of steps in an interval.
     """
 
     rotating = moving = responds = True
@@ -142,7 +143,8 @@ class Ships(Rates):
         """
         t, step, load = ti.cast(time, self.exact), ti.cast(dt, self.exact), self.nothing()
         for k in ti.static(range(len(self.loads))):
-            load += self.loads[k].of_world(w)
+            pushed = self.loads[k].of_world(w)
+            load += ti.Vector([pushed[own] for own in ti.static(self.loads[k].in_plane)])
         if t < self.release[w]:
             self.hold_still(w, t, step)
         else:

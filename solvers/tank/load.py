@@ -8,7 +8,7 @@ Pieces are the walls of each tank, the parts, and the lining of fixed grains.
 import numpy as np
 import taichi as ti
 
-from solvers.machine.quantity import PLANE, directions
+from solvers.machine.quantity import PLANE, directions, in_plane
 from solvers.machine.state import Axis, Scope
 from solvers.machine.units import APART, Units
 from solvers.space.axes import named_turns
@@ -47,7 +47,7 @@ class Load:
     ):
         self.units, self.pieces, self.carried = units, pieces, shares is not None
         names = *directions(axes), *named_turns("moment", axes)
-        self.freedoms, self.entries = len(names), len(names) ** 2
+        self.freedoms, self.entries, self.in_plane = len(names), len(names) ** 2, in_plane(axes)
         room = pieces if units.single else -(-pieces // APART) * APART  # no two units write to one cache line
         self.exact = arrays.exact
         own, each = arrays.under("load"), (units.axis, Axis("piece", room))

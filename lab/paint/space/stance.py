@@ -7,8 +7,9 @@ from functools import reduce
 
 import numpy as np
 
-ROLL = 5  # the turn about x
-OF_PLANE = (0, 1, ROLL)  # sway, heave and roll
+from solvers.machine.quantity import SPACE, in_plane
+
+OF_PLANE = in_plane(SPACE)  # sway, heave and roll
 
 
 def stances(pose: np.ndarray) -> np.ndarray:
@@ -18,11 +19,6 @@ def stances(pose: np.ndarray) -> np.ndarray:
     found = np.zeros((*pose.shape[:-1], 6))
     found[..., OF_PLANE] = pose
     return found
-
-
-def flat(pose: np.ndarray) -> np.ndarray:
-    """Sway, heave and roll (..., 3) of poses (..., 3), or of stances (..., 6)."""
-    return pose[..., list(OF_PLANE)] if pose.shape[-1] == 6 else pose
 
 
 def lengths(vectors: np.ndarray) -> np.ndarray:

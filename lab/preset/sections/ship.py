@@ -10,6 +10,7 @@ from lab.preset.fields import Columns, Table
 from lab.preset.outline import at_height, box_hull
 from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit
+from solvers.machine.quantity import flat
 from solvers.ship.hydrostatics import turned
 
 OFFSETS = "station", "z", "half_breadth"  # columns of her hull's file
@@ -203,10 +204,12 @@ def axis_place(ship: Ship) -> str:
 
 
 def axis_motion(ship: Ship, pose: np.ndarray) -> np.ndarray:
-    """Sway and heave (m) of the ship's axis from its position at rest, and roll (rad), from the tank's poses (…, 3).
+    """Sway and heave (m) of the ship's axis from its position at rest, and roll (rad), from the tank's poses (…, 3),
+    in space (…, 6).
 
     Everywhere in the lab, sway and heave of a ship are defined in this way.
     """
+    pose = flat(pose)
     arm = turned(tuple(np.subtract(ship.hold, ship.about)), pose[..., 2])
     rest = np.array([ship.about[0], ship.heave + ship.about[1]])
     return np.concatenate([pose[..., :2] - arm - rest, pose[..., 2:]], axis=-1)

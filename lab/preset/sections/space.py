@@ -10,7 +10,6 @@ from lab.preset.units import show
 
 PLANE_ALONE = {
     "water": "water is computed in the plane alone",
-    "ship": "a ship's holds are computed in the plane alone",
     "axle": "a tank on an axle is computed in the plane alone",
     "shapes": "irregular grains are computed in the plane alone",
 }
@@ -40,7 +39,14 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     for key, reason in PLANE_ALONE.items():
         if getattr(preset, key):
             yield key, f"{reason}; leave this out, or {key_of_space}"
-    for key in ("thickness", "roughness", "length"):
+    if preset.ship and tank.turned:
+        yield "tank.turned", "a ship's hold is drawn out along her; give tank.along in its place"
+    longest = tank.length or (preset.ship.length if preset.ship else None)
+    if tank.along and longest and tank.along > longest:
+        yield "tank.along", f"is longer than her hold, {show(longest, 'm')}; make it shorter"
+    if preset.tanks:
+        yield "tanks", "a ship has no further tanks in space; leave these out, or tank.along"
+    for key in ("thickness", "roughness"):
         if getattr(tank, key) is not None:
             yield f"tank.{key}", f"this is of the plane alone; leave this out, or {key_of_space}"
     if tank.turned:

@@ -66,8 +66,8 @@ class Shell:
 class Tank(Shell):
     """A tank: width and height, or an outline; its length in space; whether it has a lid and a lining of fixed grains.
 
-    The plane stands for a slab of this `thickness`: forces are those on the slab, and a ship carries as many slabs as
-    fit into a metre of the tank's `length`.
+    The plane stands for a slab of this `thickness`, and a tank in space is one as thick as it is `along`: forces are
+    those on the slab, and a ship carries as many slabs as fit into a metre of the tank's `length`.
     """
 
     along: Annotated[

@@ -28,6 +28,11 @@ class Prism:
     axes = SPACE
 
     @property
+    def thickness(self) -> float:
+        """Thickness (m) of the slab of a ship's hold that it is."""
+        return self.along
+
+    @property
     def period(self) -> float | None:
         """The length (m) after which space repeats itself along x; None where it does not."""
         return self.along if self.periodic else None
@@ -66,7 +71,7 @@ class Turned:
     """
 
     axes = SPACE
-    period = None
+    period = thickness = None
 
     def half(self, outline: np.ndarray) -> float:
         """How far (m) it reaches along x on either side of the origin."""

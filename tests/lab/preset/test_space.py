@@ -13,7 +13,8 @@ from lab.recording.layout import tables_of
 from lab.view.live import steerable
 
 WATER = {"grains": False, "material": False, "water": {"depth": "20 mm", "spacing": "5 mm"}}
-CHICKPEAS = "space/tilting-box-quick"
+CHICKPEAS, BARGE = "space/tilting-box-quick", "space/barge-quick"
+AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
 
 
 @pytest.mark.parametrize(
@@ -33,6 +34,13 @@ CHICKPEAS = "space/tilting-box-quick"
         ("space/silo", {"parts.gate.move": ["1 mm", "0 mm"]}, "parts.gate: in a tank that is turned a part moves up"),
         (CHICKPEAS, {"grains.depth": "1 m"}, "grains.depth: 1 m must be less than the tank's height"),
         ("space/silo", {"grains.count": 900_000}, "grains.count: 900000 grains do not fit into the region"),
+        (
+            BARGE,
+            {"tank.turned": True, "tank.along": False, "tank.periodic": False},
+            "tank.turned: a ship's hold is drawn",
+        ),
+        (BARGE, {"ship.length": "1 m", "tanks.aft": AFT}, "tanks: a ship has no further tanks in space"),
+        (BARGE, {"ship.length": "1 m", "tank.length": "50 mm"}, "tank.along: is longer than her hold, 50 mm"),
     ],
 )
 def test_what_does_not_go_in_space_is_refused_in_a_sentence(preset, changes, said):
@@ -73,6 +81,15 @@ def test_a_bed_starts_within_its_tank_without_overlaps(preset):
         volume = loaded.tank.along * 0.3 * loaded.grains.depth
         share = np.pi / 6.0 * loaded.sizes.mean_cube * len(radius) / volume
         assert share == pytest.approx(0.57, rel=1e-3)
+
+
+def test_a_ship_carries_the_plane_s_cargo_in_space():
+    """As much mass a metre in a slice as in the plane's slab, of any thickness, and the load counts accordingly."""
+    plane, space, coarse = (load(name).resolved for name in ("ship/capsize-map-quick", "space/barge", BARGE))
+    a_metre = [grain_count(one) * one.sizes.mean_cube * one.a_metre for one in (plane, space, coarse)]
+    np.testing.assert_allclose(a_metre, a_metre[0], rtol=1e-3)
+    hold = load(BARGE, {"ship.length": "1 m", "tank.length": "500 mm"}).resolved
+    assert hold.a_metre == pytest.approx(0.5 / 0.06)
 
 
 def test_a_scene_in_space_is_not_steered():
