@@ -68,6 +68,9 @@ def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
     solid = preset.tank.solid
     if solid is None:
         return None
-    along = getattr(solid, "along", None)
-    poses, moves = (footage.pose, footage.series_pose), (footage.part, footage.part_turn)
+    along, rest = getattr(solid, "along", None), np.zeros(6)
+    if preset.ship:  # a hold is drawn from where it is as she rests; her hull is not drawn
+        rest[:2] = preset.ship.hold_at_rest
+    poses = [stances(pose) - rest for pose in (footage.pose, footage.series_pose)]
+    moves = footage.part, footage.part_turn
     return SpaceScene.of(footage.outline, along, footage.open_edges, footage.parts, poses, moves)

@@ -7,9 +7,8 @@ from functools import reduce
 
 import numpy as np
 
-from solvers.machine.quantity import SPACE, in_plane
-
-OF_PLANE = in_plane(SPACE)  # sway, heave and roll
+ROLL = 5  # the turn about x
+OF_PLANE = (0, 1, ROLL)  # sway, heave and roll
 
 
 def stances(pose: np.ndarray) -> np.ndarray:

@@ -195,6 +195,11 @@ class Ship:
         """Heave of the hull's origin at rest (m)."""
         return -self.draught - float(self.corners[:, 1].min())
 
+    @property
+    def hold_at_rest(self) -> tuple[float, float]:
+        """Where the tank's origin is as she rests upright, y and z (m) from the waterline above the hull's origin."""
+        return self.hold[0], self.heave + self.hold[1]
+
 
 def axis_place(ship: Ship) -> str:
     """Where the ship's axis is, in words."""

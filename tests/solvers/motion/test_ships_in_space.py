@@ -160,3 +160,17 @@ def test_a_slice_with_one_layer_moves_a_ship_as_the_discs_of_the_plane(run):
         space["position"][LIVELY, :, :2], plane["position"][0], rtol=0.0, atol=1e-10 * 2.0 * RADIUS
     )
     np.testing.assert_array_equal(space["position"][LIVELY, :, 2], 0.0)
+
+
+@pytest.mark.slow
+def test_a_ship_in_space_goes_on_from_a_kept_state_bit_for_bit(run):
+    begun(run, np.column_stack([LAYER, np.zeros(COUNT)]))
+    run.advance(STEPS)
+    kept = run.state()
+    ends = []
+    for _ in range(2):
+        run.restore(kept)
+        run.advance(STEPS)
+        ends.append({**run.observe(), **run.snapshot()})
+    for name, values in ends[0].items():
+        np.testing.assert_array_equal(ends[1][name], values, err_msg=name)
