@@ -9,7 +9,15 @@ from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from lab.preset.sections.water.floating import check_draught
 from lab.preset.units import show
-from solvers.grains.bed.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
+from solvers.grains.bed.filling import (
+    SPACING,
+    DoesNotFit,
+    count_for_depth,
+    headroom,
+    lattice,
+    layered,
+    start_positions,
+)
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.checks import DEEPEST_OVERLAP
 from solvers.grains.given import Grains
@@ -17,7 +25,7 @@ from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import closing_speed
 from solvers.machine.quantity import SPACE
 from solvers.scene import Scene
-from solvers.tank.outline import lining, raised
+from solvers.tank.outline import NONE_FIXED, lining, raised
 from solvers.tank.tank import Tank
 
 THROUGH = 1.0  # radii: at this overlap grains pass through each other and the walls
@@ -54,13 +62,39 @@ def filling_outline(preset: Preset) -> np.ndarray:
     outline, grains = np.array(preset.hold.corners), preset.grains
     if grains.listed or grains.region or not preset.run.settles:
         return outline
-    count, largest = grain_count(preset), _farthest(preset)
     low = not (grains.surface == "disturbed" or preset.hold.open_edges)
-    solid = preset.hold.solid
-    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset), solid)) >= count:
+    solid, layers = preset.hold.solid, _layers(preset)
+    if solid is not None and not solid.heightens:
+        return outline
+    if low and _fits(preset, outline, layers):
         return outline
     across = [2.0 * solid.half(outline)] if solid else []
-    return raised(outline, headroom(count, largest, preset.hold.extent[0], *across))
+    return raised(outline, sum(headroom(count, largest, preset.hold.extent[0], *across) for count, largest in layers))
+
+
+def _layers(preset: Preset) -> list[tuple[int, float]]:
+    """Number and largest radius (m) of the grains of each layer in which they start, from the lowest up."""
+    count = grain_count(preset)
+    if not preset.grains.layered:
+        return [(count, _farthest(preset))]
+    each, larger = np.bincount(_ordered(preset, count), minlength=1 + len(preset.kinds)), 1.0
+    if preset.classes:
+        larger = np.array([diameter for diameter, _ in preset.classes])
+        larger = larger / larger.max()
+    return list(zip(each.tolist(), (_farthest(preset) * larger * np.ones(len(each))).tolist(), strict=True))
+
+
+def _fits(preset: Preset, outline: np.ndarray, layers: list[tuple[int, float]]) -> bool:
+    """Whether lattices have places for all layers of grains in a tank with this outline, one above the other."""
+    above = -np.inf
+    for count, largest in layers:
+        sites = lattice(largest, outline, fixed_grains(preset), _plates(preset), preset.hold.solid)
+        heights = np.sort(sites[:, 1])
+        heights = heights[heights >= above + SPACING * largest]
+        if len(heights) < count:
+            return False
+        above = float(heights[count - 1]) + SPACING * largest if count else above
+    return True
 
 
 def _farthest(preset: Preset) -> float:
@@ -90,13 +124,14 @@ def grains_of(preset: Preset) -> tuple[Grains | None, np.ndarray]:
     """
     if preset.grains is None:
         return None, np.zeros((preset.run.repeats, 0, 2))
-    radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
+    kind = _kind(preset)
+    radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset, kind)
     low, high = preset.diameters
     given = Grains(
         radius,
         preset.material,
         preset.wall_material,
-        **_kinds(preset, radius.shape),
+        **_kinds(preset, kind),
         normal=preset.contact.normal,
         tangential=preset.contact.tangential,
         rolling=preset.contact.rolling,
@@ -111,15 +146,18 @@ def grains_of(preset: Preset) -> tuple[Grains | None, np.ndarray]:
     return given, position
 
 
-def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
-    """Radii (W, n), positions (W, n, 2) and shapes of the grains that fill a tank, each repeat from its own seed.
+def _filled(preset: Preset, kind: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, dict]:
+    """Radii (W, n), positions (W, n, axes) and shapes of the grains that fill a tank, each repeat from its own seed.
 
-    The grains are at rest, and so far apart that irregular ones can turn freely.
+    `kind` (W, n): their kinds, None if there is one. The grains are at rest, and so far apart that irregular ones can
+    turn freely.
     """
     grains, count = preset.grains, grain_count(preset)
     shapes = draw_shapes(preset, count)
     random = [np.random.default_rng(preset.run.seed + w) for w in range(preset.run.repeats)]
-    if shapes is None:
+    if shapes is None and kind is not None and preset.classes and not grains.table:
+        radius = reach = _spread(preset, np.array([diameter for diameter, _ in preset.classes])[kind], random)
+    elif shapes is None:
         radius = reach = np.stack([preset.sizes.draw(count, r) for r in random])
     else:
         radius = _sized(preset, shapes, random)
@@ -127,11 +165,12 @@ def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
     outline, fixed = filling_outline(preset), fixed_grains(preset)
     plates, thrown = _plates(preset), grains.surface == "disturbed"
     region = np.array(grains.place) if grains.place else None
+    given = [(outline, r, fixed, plates, thrown, region, preset.hold.solid) for r in random]
     try:
-        position = [
-            start_positions(size, outline, r, fixed, plates, thrown, region, preset.hold.solid)
-            for size, r in zip(reach, random, strict=True)
-        ]
+        if grains.layered:
+            position = [layered(*layers, *how) for *layers, how in zip(kind, reach, given, strict=True)]
+        else:
+            position = [start_positions(size, *how) for size, how in zip(reach, given, strict=True)]
     except DoesNotFit as error:
         raise LabError(f"grains.{'count' if grains.count else 'depth'}: {error}") from None
     return radius, np.stack(position), {"shapes": shapes} if shapes else {}
@@ -139,10 +178,14 @@ def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
 
 def _sized(preset: Preset, shapes: Shapes, random: list[np.random.Generator]) -> np.ndarray:
     """Radii (W, n) of discs of equal area, spread about that of each grain's class."""
-    grains = preset.grains
     diameter = np.array([shape.diameter for shape in preset.shape_classes.values()])[classes(preset)][shapes.which]
-    relative = Sizes(((2.0, 1.0),), grains.spread, grains.normal)
-    return 0.5 * diameter * np.stack([relative.draw(shapes.which.shape[1], r) for r in random])
+    return _spread(preset, diameter, random)
+
+
+def _spread(preset: Preset, diameter: np.ndarray, random: list[np.random.Generator]) -> np.ndarray:
+    """Radii (W, n) spread about those of mean diameters (W, n) m, each repeat from its own numbers."""
+    relative = Sizes(((2.0, 1.0),), preset.grains.spread, preset.grains.normal)
+    return 0.5 * diameter * np.stack([relative.draw(diameter.shape[1], r) for r in random])
 
 
 def _plates(preset: Preset) -> list[np.ndarray]:
@@ -150,24 +193,33 @@ def _plates(preset: Preset) -> list[np.ndarray]:
     return [np.array(part.line) for part in preset.parts.values() if part.tank == preset.grains.room]
 
 
-def _kinds(preset: Preset, shape: tuple[int, int]) -> dict:
-    """The kinds of grains, as listed or mixed at random, each repeat from its own seed; empty if there is one kind."""
-    if not preset.kinds:
+def _kinds(preset: Preset, kind: np.ndarray | None) -> dict:
+    """The kinds of grains and their materials; empty if there is only one kind."""
+    if kind is None:
         return {}
-    worlds, count = shape
-    others = {"others": tuple(other.material for other in preset.others.values()), "unlike": _unlike(preset)}
+    against = [((0, k), other.against) for k, other in enumerate(preset.others.values(), start=1) if other.against]
+    return {
+        "kind": kind,
+        "others": tuple(other.material for other in preset.others.values()),
+        "unlike": tuple(against),
+    }
+
+
+def _kind(preset: Preset) -> np.ndarray | None:
+    """The kind (W, n) of each grain, as listed or mixed at random, each repeat from its seed; None if there is one."""
+    if not preset.kinds:
+        return None
     if preset.grains.listed and preset.grains.listed.kind is not None:
-        return {"kind": np.stack([preset.grains.listed.kind.astype(int)] * worlds), **others}
+        return np.stack([preset.grains.listed.kind.astype(int)] * preset.run.repeats)
+    ordered = _ordered(preset, grain_count(preset))
+    random = [np.random.default_rng([preset.run.seed + w, 1]) for w in range(preset.run.repeats)]
+    return np.stack([r.permutation(ordered) for r in random])
+
+
+def _ordered(preset: Preset, count: int) -> np.ndarray:
+    """The kinds (n,) of so many grains: first those of [kinds], in their order, then the rest, which is 0."""
     bounds = np.round(np.cumsum([kind.share for kind in preset.kinds.values()]) * count)
-    ordered = (np.searchsorted(bounds, np.arange(count), side="right") + 1) % (len(preset.kinds) + 1)
-    random = [np.random.default_rng([preset.run.seed + w, 1]) for w in range(worlds)]
-    return {"kind": np.stack([r.permutation(ordered) for r in random]), **others}
-
-
-def _unlike(preset: Preset) -> tuple:
-    """The contact materials of [material] and other kinds, where they are given."""
-    others = enumerate(preset.others.values(), start=1)
-    return tuple(((0, k), other.against) for k, other in others if other.against)
+    return (np.searchsorted(bounds, np.arange(count), side="right") + 1) % (len(preset.kinds) + 1)
 
 
 def _listed(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:

@@ -10,7 +10,8 @@ from solvers.motion.harmonic import Harmonic
 
 # Harmonic motions and the coordinate of the pose (Y, Z, phi) that each moves.
 HARMONIC = {"sway": 0, "roll": ROLL, "heave": 1}
-LEAST_TILT = np.radians(2.0)  # a run that turns the tank by less is not a tilting test
+# A run that turns the tank by less is not a tilting test, and one that turns it by more is that of a drum
+LEAST_TILT, MOST_TILT = np.radians(2.0), np.pi
 
 
 @dataclass(frozen=True)
@@ -22,8 +23,8 @@ class Leg:
 
 
 def is_tilt(recording: Recording) -> bool:
-    """Whether the preset tilts the tank and the tank has turned far enough to tell."""
-    turned = np.abs(recording.series["pose"][:, :, ROLL]).max(initial=0.0) > LEAST_TILT
+    """Whether the preset tilts the tank, the tank has turned far enough to tell, and does not go round."""
+    turned = LEAST_TILT < np.abs(recording.series["pose"][:, :, ROLL]).max(initial=0.0) <= MOST_TILT
     return recording.preset.motion.tilt is not None and bool(turned)
 
 

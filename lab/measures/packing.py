@@ -13,8 +13,7 @@ import numpy as np
 from lab.measures.surface_slope import free_surface
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
-from solvers.grains.bed.filling import clear_of_walls
-from solvers.machine.quantity import SPACE
+from solvers.machine.quantity import ROLL, SPACE
 
 OF = "grains"
 INSIDE = 2.0  # mean diameters
@@ -37,6 +36,10 @@ def measure(recording: Recording) -> dict[str, Value]:
 def _fraction(recording: Recording, frame: int) -> Value:
     """The packing fraction of each world in a picture frame."""
     position = recording.frames["position"][frame].astype(float)
+    if recording.preset.tank.lies:  # a drum is the same however far it has turned, but its bed is level in the earth
+        roll = recording.frames["pose"][frame][:, ROLL, None].astype(float)
+        y, z = position[..., 0].copy(), position[..., 1].copy()
+        position[..., 0], position[..., 1] = np.cos(roll) * y - np.sin(roll) * z, np.sin(roll) * y + np.cos(roll) * z
     found = np.array(
         [packing(recording, place, radius) for place, radius in zip(position, recording.radius, strict=True)]
     )
@@ -57,10 +60,7 @@ def packing(recording: Recording, place: np.ndarray, radius: np.ndarray) -> tupl
     surface = float(np.percentile(tops, SURFACE))
     lower, upper = np.append(outline.min(axis=0), -half), np.append(outline.max(axis=0), half)
     points = np.random.default_rng(0).uniform(lower, [upper[0], max(surface - away, lower[1]), upper[2]], (POINTS, 3))
-    inside = clear_of_walls(solid.section(points), outline, away)
-    if not solid.period:
-        inside &= np.abs(points[:, 2]) <= half - away
-    points = points[inside]
+    points = points[solid.clear(points, outline, away)]
     if len(points) < LEAST_POINTS:
         return np.nan, np.nan
     if solid.period:  # with its images

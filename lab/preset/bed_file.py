@@ -7,7 +7,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.fields import Table
 from lab.preset.units import show
-from solvers.grains.bed.filling import clear_of_walls
+from solvers.tank.outline import clear_of_walls
 from solvers.tank.solids.solid import Solid
 
 NEEDED = ("y", "z", "radius")
@@ -113,7 +113,7 @@ def inside(place: np.ndarray, outline: np.ndarray, reach: np.ndarray, solid: Sol
     """Which places (n, 3) m, y, z, x, are in a tank, `reach` (n,) m from its walls; a `solid` in space."""
     if solid is None:
         return clear_of_walls(place[:, :2], outline, reach)
-    return clear_of_walls(solid.section(place), outline, reach) & solid.between_ends(place, reach)
+    return solid.clear(place, outline, reach)
 
 
 def _check_overlaps(position: np.ndarray, radius: np.ndarray, deepest: float, period: float | None) -> None:

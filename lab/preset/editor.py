@@ -115,7 +115,7 @@ def _bounds(taken: Taken) -> dict[str, float]:
 
 def _quick() -> dict:
     """The table of a quick variant: how it differs, and the keys that it may change."""
-    whole, keys = _table(Preset), [key for key in marked(Preset, "cheap") if NAME not in key.split(".")]
+    whole, keys = _table(Preset), marked(Preset, "cheap")
     table = _picked(whole, [key.split(".") for key in keys])
     table["properties"]["differs"] = {"type": "string", "description": "How the quick variant differs, in a sentence."}
     said = 'Keys that make the preset cheaper, under the name with "-quick" at its end; false: none.'
@@ -124,6 +124,10 @@ def _quick() -> dict:
 
 def _picked(schema: Mapping[str, Any], paths: list[list[str]]) -> dict:
     """The schema of a table with some of its keys alone."""
+    if paths[0][0] == NAME:
+        ((pattern, inner),) = schema["patternProperties"].items()
+        picked = _picked(_table_in(inner), [path[1:] for path in paths])
+        return {"type": "object", "additionalProperties": False, "patternProperties": {pattern: picked}}
     found = {}
     for name in dict.fromkeys(path[0] for path in paths):
         rest = [path[1:] for path in paths if path[0] == name]
@@ -131,6 +135,10 @@ def _picked(schema: Mapping[str, Any], paths: list[list[str]]) -> dict:
         if not all(rest):
             found[name] = inner
             continue
-        table = next(one for one in inner.get("anyOf", [inner]) if "properties" in one)
-        found[name] = _picked(table, rest)
+        found[name] = _picked(_table_in(inner), rest)
     return {"type": "object", "additionalProperties": False, "properties": found}
+
+
+def _table_in(schema: Mapping[str, Any]) -> dict:
+    """The schema of a table among those of what a key takes."""
+    return next(one for one in schema.get("anyOf", [schema]) if {"properties", "patternProperties"} & one.keys())

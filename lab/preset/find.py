@@ -22,7 +22,7 @@ from lab.base.data import PRESETS
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
 from lab.preset import formats
-from lab.preset.fields import marked
+from lab.preset.fields import NAME, marked
 from lab.preset.kept import read as kept
 from lab.preset.merge import Layer, merged, nested
 from lab.preset.reader import check_keys, read
@@ -162,11 +162,17 @@ def _quick_variant(source: Source, layers: list[Layer], cheap: Collection[str]) 
     if not isinstance(differs, str) or not differs.strip():
         raise LabError(f"{source.shown}: quick.differs: missing; say in a text how the quick variant differs.")
     for dotted in _leaves(variant):
-        if not any(dotted == key or dotted.startswith(f"{key}.") for key in cheap):
+        if not any(_is_below(dotted, key) for key in cheap):
             raise LabError(
                 f"{source.shown}: quick.{quoted(dotted)[1:-1]}: may not differ; only {', '.join(cheap)} may."
             )
     return {"quick": differs, **variant}
+
+
+def _is_below(dotted: str, key: str) -> bool:
+    """Whether a dotted key of a preset is a key of the schema, in which NAME is any name, or below it."""
+    parts, asked = dotted.split("."), key.split(".")
+    return len(parts) >= len(asked) and all(two in (one, NAME) for one, two in zip(parts, asked, strict=False))
 
 
 def _quick_tables(layers: list[Layer]) -> list:

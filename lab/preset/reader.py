@@ -122,17 +122,17 @@ def _file(taken: Taken, raw: object, key: str) -> Table:
 
 
 def _scalar(taken: Taken, raw: object, key: str) -> Any:
+    words = "".join(f' (or "{word}")' for word in taken.words)
     if taken.kind is float:
         try:
             value = parse(raw, taken.symbol)
         except LabError as error:
-            words = "".join(f' (or "{word}")' for word in taken.words)
             raise LabError(f"{key}: {str(error).removesuffix('.')}{words}.") from None
         if value and not 1.0 / BOUND <= abs(value) <= BOUND:
             raise LabError(f"{key}: {quoted(raw)} is beyond all measure; look at the number and its unit.")
         return value
     if not isinstance(raw, taken.kind) or (taken.kind is int and isinstance(raw, bool)):
-        raise LabError(f"{key}: {_needed(taken)} (got {quoted(raw)}).")
+        raise LabError(f"{key}: {_needed(taken)}{words} (got {quoted(raw)}).")
     if isinstance(raw, str) and any(category(c) in ("Cc", "Cs") for c in raw if c not in "\n\t"):
         raise LabError(f"{key}: the text has characters that cannot be shown (got {quoted(raw)}).")
     return raw

@@ -25,7 +25,7 @@ from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
 from lab.preset.sections.axle import Axle, check_axle
 from lab.preset.sections.contact import Contact
-from lab.preset.sections.grains import Grains, check_grains, check_room
+from lab.preset.sections.grains import Grains, check_grains, check_layers, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
 from lab.preset.sections.motion import Motion, check_motion
 from lab.preset.sections.naval.ship_checks import check_ship
@@ -135,7 +135,9 @@ class Preset(WithBodies):
         """The classes of sizes (diameter m, share by number); empty if one diameter is given."""
         if self.shapes:
             return tuple((shape.diameter, shape.share) for shape in self.shape_classes.values())
-        return by_number(self.grains.table, self.grains.shares) if self.grains.table else ()
+        if self.grains.table:
+            return by_number(self.grains.table, self.grains.shares)
+        return materials.classes_of(self.kinds, self.grains.diameter)
 
     @cached_property
     def mean_diameter(self) -> float:
@@ -260,6 +262,7 @@ def _check_of_grains(preset: Preset) -> None:
     shapes.check_shapes(preset)
     settle = preset.run.settles
     check_grains(preset.grains, bool(preset.shape_classes), settle)
+    check_layers(preset.grains, preset.kinds)
     sizes = preset.sizes, preset.mean_diameter, preset.hold, _size_key(preset)
     check_room(preset.grains, *sizes, settle, preset.stiffness_scale)
     check_dissipation(preset.material, "material", needed=True)
@@ -275,4 +278,8 @@ def _size_key(preset: Preset) -> str:
     if preset.shapes:
         sizes = preset.shape_classes
         return f"shapes.{max(sizes, key=lambda name: sizes[name].diameter)}.diameter"
-    return "grains.diameter" if preset.grains.table is None else "grains.table"
+    if preset.grains.table is not None:
+        return "grains.table"
+    largest = max(preset.kinds.items(), key=lambda item: item[1].diameter or 0.0, default=("", None))
+    own = largest[1] is not None and (largest[1].diameter or 0.0) > (preset.grains.diameter or 0.0)
+    return f"kinds.{largest[0]}.diameter" if own else "grains.diameter"

@@ -24,12 +24,13 @@ from lab.base.progress import Progress
 from lab.preset.schema import Preset
 from lab.preset.units import show
 from lab.runs.bed_key import bed_key
-from solvers.grains.bed.filling import clear_of_walls, levelled
+from solvers.grains.bed.filling import levelled
 from solvers.grains.materials import Material
 from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axes, of_world
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from solvers.tank.outline import clear_of_walls
 
 LARGEST_STORE = 2**28  # bytes
 ABANDONED = 3600.0  # s after which a half-written file is deleted

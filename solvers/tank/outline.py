@@ -3,6 +3,8 @@
 An outline is a simple polygon (m, 2) in m, counter-clockwise; its edge k runs from corner k to corner k + 1.
 """
 
+from collections.abc import Sequence
+from itertools import pairwise
 from math import pi
 
 import numpy as np
@@ -10,6 +12,7 @@ import numpy as np
 # Grains of a lining: diameters uniform within ± this share, gaps up to this share of a diameter. On a regular row of
 # equal grains a bed of the same size would crystallise.
 UNEVEN = 0.1
+NONE_FIXED = np.empty((0, 3))
 
 
 def top_edges(outline: np.ndarray) -> tuple[int, ...]:
@@ -116,3 +119,39 @@ def _row(length: float, diameter: float, first: float, last: float, random: np.r
         end += gap + 2.0 * radius
     spare = max(0.0, length - last - end) / (len(row) + 1)
     return [(place + spare * (n + 1), radius) for n, (place, radius) in enumerate(row)]
+
+
+def clear_of_walls(
+    sites: np.ndarray,
+    outline: np.ndarray,
+    reach: float | np.ndarray,
+    fixed: np.ndarray = NONE_FIXED,
+    plates: Sequence[np.ndarray] = (),
+) -> np.ndarray:
+    """Which sites (n, 2) lie inside the outline, at least `reach` (m) from it, from plates and from fixed grains.
+
+    A plate that ends where it begins is a body: none lie in it.
+    """
+    clear = inside(sites, outline)
+    for line in plates:
+        if np.array_equal(line[0], line[-1]):
+            clear &= ~inside(sites, line)
+    edges = [(a, b) for line in (np.vstack([outline, outline[:1]]), *plates) for a, b in pairwise(line)]
+    for a, b in edges:
+        edge = b - a
+        share = np.clip((sites - a) @ edge / (edge @ edge), 0.0, 1.0)
+        distance = np.linalg.norm(sites - (a + share[:, None] * edge), axis=1)
+        clear &= distance >= reach * (1.0 - 1e-9)
+    for y, z, radius in fixed:
+        clear &= np.hypot(sites[:, 0] - y, sites[:, 1] - z) >= (reach + radius) * (1.0 - 1e-9)
+    return clear
+
+
+def inside(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
+    """Which points (n, 2) lie inside a polygon (m, 2): a ray from there crosses its edges an odd number of times."""
+    y, z = points.T
+    odd = np.zeros(len(points), dtype=bool)
+    for (y0, z0), (y1, z1) in pairwise(np.vstack([polygon, polygon[:1]])):
+        passes = (z0 > z) != (z1 > z)
+        odd ^= passes & (((y1 - y0) * (z - z0) < (y - y0) * (z1 - z0)) == (z1 > z0))
+    return odd

@@ -7,6 +7,7 @@ import numpy as np
 from lab.paint.cargo.looks import Stowage
 from lab.paint.footage import Bed
 from lab.paint.space.scene import SpaceScene
+from lab.paint.space.walls import prism
 from lab.preset.sections.video import Video
 
 WIDTH, HEIGHT, ALONG = 0.30, 0.20, 0.15  # m, of the box
@@ -42,9 +43,8 @@ class MadeFootage:
     title: str = "Spheres in a box"
 
     def __post_init__(self) -> None:
-        self.space = SpaceScene.of(
-            BOX, ALONG, self.open_edges, {}, (self.stance[:, None],) * 2, (np.zeros((len(self.time), 1, 0, 3)),) * 2
-        )
+        still = (np.zeros((len(self.time), 1, 0, 3)),) * 2
+        self.space = SpaceScene.of(prism(BOX, ALONG, self.open_edges), [], (self.stance[:, None],) * 2, still)
         self.pose = self.series_pose = self.stance[:, None, [0, 1, 5]]
         self.series_time, self.outline, self.worlds = self.time, BOX, 1
         self.centre_of_mass = self.position.mean(axis=1)[:, None]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lab.paint.space.stance import stances
-from lab.paint.space.walls import Walls, drawn_out, prism, turned_plate, turned_tank
+from lab.paint.space.walls import Walls, drawn_out, lying_tank, prism, turned_plate, turned_tank
+from solvers.tank.solids.solid import Lying, Prism
 
 if TYPE_CHECKING:
     from lab.preset.schema import Preset
@@ -32,19 +33,16 @@ class SpaceScene:
     @classmethod
     def of(
         cls,
-        outline: np.ndarray,
-        along: float | None,
-        open_edges: Sequence[int],
-        parts: Mapping[str, np.ndarray],
+        walls: Walls,
+        plates: Sequence[Walls],
         poses: tuple[np.ndarray, np.ndarray],
         moves: tuple[np.ndarray, np.ndarray],
     ) -> SpaceScene:
-        """A tank with a section (m, 2) y, z, and parts (k, 2), all as long in x as `along` (m); None: turned about z.
+        """A tank with these walls, and plates in it.
 
         poses: of frames (F, W, 3 or 6) and of the series; moves: displacements (F, W, P, 2 or 3) and turns (F, W, P) or
         (F, W, P, 3) of the parts.
         """
-        plates = tuple(drawn_out(line, along) if along else turned_plate(line) for line in parts.values())
         shift, turn = moves
         part = np.zeros((*shift.shape[:-1], 6))
         part[..., : shift.shape[-1]] = shift
@@ -52,8 +50,7 @@ class SpaceScene:
             part[..., 3:] = turn
         else:
             part[..., 5] = turn
-        walls = prism(outline, along, open_edges) if along else turned_tank(outline, open_edges)
-        return cls(walls, plates, *(stances(pose) for pose in poses), part)
+        return cls(walls, tuple(plates), *(stances(pose) for pose in poses), part)
 
     def part_at(self, number: int, world: int, row: float) -> np.ndarray:
         """The stance (6,) of a part in the tank, in a frame or between two."""
@@ -68,9 +65,15 @@ def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
     solid = preset.tank.solid
     if solid is None:
         return None
-    along, rest = getattr(solid, "along", None), np.zeros(6)
+    rest = np.zeros(6)
     if preset.ship:  # a hold is drawn from where it is as she rests; her hull is not drawn
         rest[:2] = preset.ship.hold_at_rest
     poses = [stances(pose) - rest for pose in (footage.pose, footage.series_pose)]
-    moves = footage.part, footage.part_turn
-    return SpaceScene.of(footage.outline, along, footage.open_edges, footage.parts, poses, moves)
+    moves, lines = (footage.part, footage.part_turn), footage.parts.values()
+    if isinstance(solid, Prism):
+        walls = prism(footage.outline, solid.along, footage.open_edges)
+        return SpaceScene.of(walls, [drawn_out(line, solid.along) for line in lines], poses, moves)
+    if isinstance(solid, Lying):
+        return SpaceScene.of(lying_tank(solid.corners), [], poses, moves)
+    walls = turned_tank(footage.outline, footage.open_edges)
+    return SpaceScene.of(walls, [turned_plate(line) for line in lines], poses, moves)

@@ -141,6 +141,13 @@ def turned_tank(outline: np.ndarray, open_edges: Sequence[int] = ()) -> Walls:
     return Walls.joined([_turned(start, end) for start, end in pairs])
 
 
+def lying_tank(profile: np.ndarray) -> Walls:
+    """The walls of a tank with a section (m, 2) across the axis x and along it, alike on both sides, turned about x."""
+    standing = turned_tank(profile)  # z and x are exchanged, which turns the way round a face
+    faces = [standing.points[a:b][::-1, [0, 2, 1]] for a, b in pairwise(standing.first)]
+    return Walls.of(faces)
+
+
 def _turned(start: np.ndarray, end: np.ndarray, pane: bool = False) -> Walls:
     """A straight piece of a section, as far as it is right of the axis, turned; its inner side is on its left."""
     if max(start[0], end[0]) <= 0.0:

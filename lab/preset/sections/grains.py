@@ -1,7 +1,7 @@
 """The grains of a preset, and the check that they fit into the tank."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Literal
@@ -12,11 +12,11 @@ from lab.base.errors import LabError
 from lab.preset.bed_file import MOST, NEEDED, OPTIONAL, ListedGrains, check_listed, check_radii, listed
 from lab.preset.fields import Columns, Table
 from lab.preset.outline import Point, area, simple_polygon
+from lab.preset.sections.materials import Kind
 from lab.preset.sections.tank import Tank
 from lab.preset.units import needed, show
 from solvers.grains.bed.sizes import Sizes
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
-from solvers.tank.solids.solid import Solid
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
 DENSEST_SPHERES = math.pi / math.sqrt(18)  # largest share of space that equal spheres fill (Hales 2005)
@@ -67,6 +67,10 @@ class Grains:
     surface: Annotated[
         Literal["undisturbed", "slightly-disturbed", "disturbed"], Doc("How the bed's surface is made.")
     ] = "slightly-disturbed"
+    layered: Annotated[
+        bool,
+        Doc("Whether the kinds of grains start in layers, the rest lowest and each kind above the one before it."),
+    ] = False
     region: Annotated[
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
         Doc("Corners, y and z each, of the part of the tank in which the grains start, such as a funnel."),
@@ -139,6 +143,21 @@ def _check_region(grains: Grains) -> None:
         raise LabError(f"grains.region: {error}") from None
 
 
+def check_layers(grains: Grains, kinds: Mapping[str, Kind]) -> None:
+    """Raise LabError for layers or sizes of kinds of grains that do not go with how the bed is made."""
+    listed = "grains.bed" if grains.bed is not None else "grains.table" if grains.table is not None else None
+    sized = [name for name, kind in kinds.items() if kind.diameter]
+    if sized and listed:
+        raise LabError(f"kinds.{sized[0]}.diameter: {listed} says how large grains are; leave one of them out.")
+    if not grains.layered:
+        return
+    if not kinds or grains.bed is not None:
+        remedy = "add a table [kinds.NAME]" if not kinds else "leave out grains.bed"
+        raise LabError(f"grains.layered: kinds of grains that are poured start in layers; {remedy}, or leave this out.")
+    if grains.surface != "slightly-disturbed":
+        raise LabError("grains.layered: layers settle as they lie; leave grains.surface out, or this.")
+
+
 def check_room(
     grains: Grains, sizes: Sizes, mean: float, tank: Tank, size_key: str, settle: bool, scale: float
 ) -> None:
@@ -161,7 +180,7 @@ def check_room(
         raise LabError(f"{size_key}: grains of up to {show(largest, 'm')} are too small for so large a tank.")
     high, deep = show(height, "m"), show(grains.depth or 0.0, "m")
     if grains.depth is None:
-        _check_count(grains, sizes, grains.place or tank.corners, tank.solid)
+        _check_count(grains, sizes, tank)
     elif grains.depth > height and tank.open_edges:
         raise LabError(f"grains.depth: {deep} is more than the tank's height, {high}.")
     elif grains.depth >= height and not tank.open_edges:
@@ -170,13 +189,14 @@ def check_room(
         raise LabError(f"grains.depth: {deep} is less than one grain, {show(mean, 'm')}.")
 
 
-def _check_count(grains: Grains, sizes: Sizes, outline: Sequence[Point], solid: Solid | None) -> None:
-    """Raise LabError for more grains than the tank, a `solid` in space, has room for in the densest lattice."""
-    taken, room = grains.count * math.pi / 4 * sizes.mean_square, DENSEST * area(outline)
-    if solid is not None:
-        corners = np.array(outline)
-        volume = solid.volume(corners, float(np.ptp(corners[:, 1])))
+def _check_count(grains: Grains, sizes: Sizes, tank: Tank) -> None:
+    """Raise LabError for more grains than the tank has room for in the densest lattice."""
+    place, solid = np.array(grains.place or tank.corners), tank.solid
+    if solid is None:
+        taken, room = grains.count * math.pi / 4 * sizes.mean_square, DENSEST * area(place)
+    else:
+        volume = solid.within(place) if grains.place else solid.volume(place, float(np.ptp(place[:, 1])))
         taken, room = grains.count * math.pi / 6 * sizes.mean_cube, DENSEST_SPHERES * volume
     if taken > room:
-        room = "region" if grains.region else "tank"
-        raise LabError(f"grains.count: {grains.count} grains do not fit into the {room}.")
+        where = "region" if grains.region else "tank"
+        raise LabError(f"grains.count: {grains.count} grains do not fit into the {where}.")

@@ -8,7 +8,7 @@ from lab.base.errors import LabError
 from lab.preset.units import show
 from solvers.grains.laws import COHESION
 from solvers.grains.materials import Material
-from solvers.machine.marks import Doc, Interval
+from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
 
 LEAST_RESTITUTION, LONGEST_DISSIPATION = 1e-6, 0.1  # 1 and s: beyond these no rebound is visible
 
@@ -45,10 +45,17 @@ Share = Annotated[
     float, Interval(gt=0, lt=1), Doc("Share of these grains by number; a column `kind` of grains.bed replaces it.")
 ]
 Against = Annotated[Wall | None, Doc("How these grains touch the rest; by the mean of the two materials without it.")]
-Kind = make_dataclass(
-    "Kind", [("share", Share), *_properties(), ("against", Against, None)], bases=(Over,), frozen=True
-)
-"""A share of the grains, of another material than the rest."""
+Diameter = Annotated[
+    float | None,
+    Cheap(),
+    Unit("m"),
+    Interval(gt=0),
+    Usual(1e-3, 1e-2, "mm"),
+    Doc("Mean diameter of these grains; that of the rest without it."),
+]
+KEYS = [("share", Share), *_properties(), ("against", Against, None), ("diameter", Diameter, None)]
+Kind = make_dataclass("Kind", KEYS, bases=(Over,), frozen=True)
+"""A share of the grains, of another material than the rest, and maybe of another size."""
 Wall.__module__ = Kind.__module__ = __name__  # so that they can be sent to another process
 
 
@@ -89,6 +96,14 @@ def check_cohesion(law: str, material: Material) -> None:
         if getattr(material, name) is None:
             example = {"humidity": "70 %", "bridge_volume": "0.002 mm^3"}[name]
             raise LabError(f'material.{name}: missing; contact.cohesion = "{law}" needs it, e.g. "{example}".')
+
+
+def classes_of(kinds: Mapping[str, Kind], diameter: float) -> tuple[tuple[float, float], ...]:
+    """Diameter (m) and share by number of the rest, of that diameter, and of each kind; empty if none has its own."""
+    if not any(kind.diameter for kind in kinds.values()):
+        return ()
+    found = tuple((kind.diameter or diameter, kind.share) for kind in kinds.values())
+    return ((diameter, 1.0 - sum(share for _, share in found)), *found)
 
 
 def check_kinds(kinds: Mapping[str, Kind], material: Material) -> None:

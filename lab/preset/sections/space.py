@@ -34,8 +34,9 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     """The keys at fault, and why."""
     tank, grains = preset.tank, preset.grains
     key_of_space = "tank.along" if tank.along else "tank.turned"
-    if tank.along and tank.turned:
-        yield "tank.turned", "a tank is either turned about its axis or drawn out; leave this out, or tank.along"
+    if tank.along and tank.turned and not tank.lies:
+        remedy = 'leave this out, or tank.along, or set it to "x" for one that lies'
+        yield "tank.turned", f"a tank is either turned about its axis or drawn out; {remedy}"
     for key, reason in PLANE_ALONE.items():
         if getattr(preset, key):
             yield key, f"{reason}; leave this out, or {key_of_space}"
@@ -49,7 +50,9 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     for key in ("thickness", "roughness"):
         if getattr(tank, key) is not None:
             yield f"tank.{key}", f"this is of the plane alone; leave this out, or {key_of_space}"
-    if tank.turned:
+    if tank.lies:
+        yield from _faults_of_lying(preset)
+    elif tank.turned:
         yield from _faults_of_turned(preset)
     if preset.run.integrator not in INTEGRATORS:
         yield "run.integrator", f"in space it is {' or '.join(INTEGRATORS)} (got {preset.run.integrator})"
@@ -75,6 +78,21 @@ def _faults_of_turned(preset) -> Iterator[tuple[str, str]]:
             yield f"parts.{name}", 'in a tank that is turned a part moves up or down; give move = ["0 mm", …] alone'
         if not _is_even(lines, part.line):
             yield f"parts.{name}.points", "in a tank that is turned each part has its like on the other side of y = 0"
+
+
+def _faults_of_lying(preset) -> Iterator[tuple[str, str]]:
+    """The keys at fault in a tank that is turned about the axis x, and why."""
+    tank, long = preset.tank, float(np.ptp(preset.tank.solid.corners[:, 1]))
+    if tank.outline and preset.grains is not None and long <= preset.diameters[1]:
+        yield "tank.outline", f"its {show(long, 'm')} along x must be more than one grain"
+    if tank.height is not None:
+        yield "tank.height", "a tank that is turned about x is as high as it is wide; leave this out"
+    if not _is_even([tank.profile]):
+        yield "tank.outline", "a tank that is turned about x has the same section on both sides of y = 0"
+    if tank.periodic:
+        yield "tank.periodic", "a tank that is turned about x has end walls; leave this out"
+    for name in preset.parts:
+        yield f"parts.{name}", "no parts stand in a tank that is turned about x yet; leave this out, or take tank.along"
 
 
 def _is_even(lines: Sequence[Sequence[Point]], one: Sequence[Point] | None = None) -> bool:

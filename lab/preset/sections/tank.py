@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit, Usual
 from solvers.machine.quantity import PLANE
 from solvers.tank.outline import top_edges
-from solvers.tank.solids.solid import Prism, Solid, Turned
+from solvers.tank.solids.solid import Lying, Prism, Solid, Turned
 
 MOST_LINING = 20_000  # grains that line a tank
 
@@ -37,18 +37,25 @@ class Shell:
     @cached_property
     def corners(self) -> tuple[Point, ...]:
         """The outline (m) in the tank's own frame, a simple polygon, counter-clockwise. Raises LabError."""
-        sides = {"width": self.width, "height": self.height}
+        return self._polygon("width", "height")
+
+    def _polygon(self, *names: str) -> tuple[Point, ...]:
+        """The polygon of the outline, or of two sides by their names, its origin in the middle of its floor."""
+        sides = {name: getattr(self, name) for name in names}
+        words = " and ".join(names)
         if self.outline is not None:
             if any(sides.values()):
-                raise LabError("tank.outline: give either an outline or a width and a height, not both.")
+                raise LabError(
+                    f"tank.outline: give either an outline or a {words.replace('and ', 'and a ')}, not both."
+                )
             try:
                 return tuple(map(tuple, np.array(simple_polygon(self.outline)).tolist()))
             except LabError as error:
                 raise LabError(f"tank.outline: {error}") from None
         for name, side in sides.items():
             if side is None:
-                raise LabError(f"tank.{name}: missing; give width and height, or an outline.")
-        return rectangle(self.width, self.height)
+                raise LabError(f"tank.{name}: missing; give {words}, or an outline.")
+        return rectangle(*sides.values())
 
     @property
     def open_edges(self) -> tuple[int, ...]:
@@ -85,10 +92,11 @@ class Tank(Shell):
         ),
     ] = False
     turned: Annotated[
-        bool,
+        bool | Literal["x"],
         Doc(
             "Whether the outline is a section through the vertical axis, turned about it, with all parts in it: the "
-            "scene is then in space, too."
+            'scene is then in space, too; with "x" a section through the axis x, as a drum lies: width is its '
+            "diameter and along its length, or the outline has corners y and x."
         ),
     ] = False
     roughness: Annotated[
@@ -102,13 +110,33 @@ class Tank(Shell):
     ] = None
 
     @property
+    def lies(self) -> bool:
+        """Whether it is turned about the axis x."""
+        return self.turned == "x"
+
+    @cached_property
+    def corners(self) -> tuple[Point, ...]:
+        """The outline (m) in the tank's own frame, a simple polygon, counter-clockwise. Raises LabError."""
+        return tuple(map(tuple, self.solid.round_outline.tolist())) if self.lies else self._polygon("width", "height")
+
+    @property
+    def profile(self) -> tuple[Point, ...]:
+        """The section (m) of a tank that lies, across its axis and along it, counter-clockwise. Raises LabError."""
+        middle = 0.0 if self.outline else 0.5 * (self.along or 0.0)
+        return tuple((y, x - middle) for y, x in self._polygon("width", "along"))
+
+    @cached_property
     def solid(self) -> Solid | None:
-        """The solid that the outline stands for in space; None in the plane."""
+        """The solid that the outline stands for in space; None in the plane. Raises LabError."""
+        if self.lies:
+            return Lying(self.profile)
         return Turned() if self.turned else Prism(self.along, self.periodic) if self.along else None
 
     @property
     def in_space(self) -> tuple[str, ...]:
         """What of it is in space, in words; nothing of one in the plane."""
+        if self.lies:
+            return (f"lying, {show(float(np.ptp(self.solid.corners[:, 1])), 'm')} long",)
         if self.turned:
             return ("turned about its axis",)
         if not self.along:

@@ -9,14 +9,14 @@ third from heaps thrown at random over the width (`start_positions(..., thrown=T
 """
 
 from collections.abc import Sequence
-from itertools import pairwise, product
+from itertools import product
 from math import ceil, pi, sqrt
 
 import numpy as np
 
 from solvers.grains.bed.sizes import Sizes
 from solvers.space.axes import UP
-from solvers.tank.outline import free_area
+from solvers.tank.outline import NONE_FIXED, clear_of_walls, free_area, inside
 from solvers.tank.solids.solid import Solid
 
 # Area fraction of settled frictional discs: 0.82 (random close packing of discs, Berryman 1983) less the loose layers
@@ -29,8 +29,6 @@ SPACING = 1.04
 HANDFUL = 3  # grains across and upwards in a heap that is thrown at once
 PROUD = 0.125  # of a diameter: the least descent for which levelling moves a grain
 LAYERS = 6  # diameters below the highest grain in which levelling searches for hollows
-
-NONE_FIXED = np.empty((0, 3))
 
 
 class DoesNotFit(ValueError):
@@ -76,19 +74,21 @@ def start_positions(
     thrown: bool = False,
     region: np.ndarray | None = None,
     solid: Solid | None = None,
+    above: float = -np.inf,
 ) -> np.ndarray:
     """Positions (n, axes) m on a randomly perturbed square lattice from the floor up, no two touching, by columns.
 
     They keep clear of the outline, of the `fixed` grains (k, 3) and of `plates`, polylines (m, 2), and within the
-    polygon `region` (m, 2) if there is one. In space the outline stands for a `solid`. If `thrown`, heaps of 3 grains
-    along each axis are dropped on one another, uniformly over the width. Raises DoesNotFit if the lattice has fewer
-    sites than there are grains.
+    polygon `region` (m, 2) if there is one, and `above` a height (m). In space the outline stands for a `solid`. If
+    `thrown`, heaps of 3 grains along each axis are dropped on one another, uniformly over the width. Raises DoesNotFit
+    if the lattice has fewer sites than there are grains.
     """
     reach = float(radius.max())
     lower, upper = outline.min(axis=0), outline.max(axis=0)
     sites = lattice(reach, outline, fixed, plates, solid)
+    sites = sites[sites[:, UP] >= above + SPACING * reach]
     if region is not None:
-        sites = sites[_inside(_section(sites, solid), region)]
+        sites = sites[inside(sites if solid is None else solid.section(sites), region)]
     if solid is not None:
         half = solid.half(outline)
         lower, upper = np.append(lower, -half), np.append(upper, half)
@@ -107,10 +107,23 @@ def start_positions(
     if solid is not None and solid.period:
         inner[-1] = 0.0  # no wall is there
     shaken = np.clip(shaken, lower + inner, upper - inner)
-    clear = clear_of_walls(_section(shaken, solid), outline, reach, fixed, plates)
+    clear = _clear(shaken, outline, reach, fixed, plates, solid)
     shaken = np.where(clear[:, None], shaken, chosen)
     # By columns, so that neighbours in space are neighbours in memory.
     return shaken[np.lexsort((chosen[:, UP], *np.delete(chosen, UP, axis=1).T[::-1]))]
+
+
+def layered(kind: np.ndarray, radius: np.ndarray, *filling: object) -> np.ndarray:
+    """Positions (n, axes) m of grains of each `kind` (n,) in a layer above the one before it, by `start_positions`."""
+    place, above = None, -np.inf
+    for number in range(int(kind.max()) + 1):
+        mine = np.flatnonzero(kind == number)
+        if not len(mine):
+            continue
+        found = start_positions(radius[mine], *filling, above)
+        place = np.empty((len(kind), found.shape[1])) if place is None else place
+        place[mine], above = found, float((found[:, UP] + radius[mine]).max())
+    return place
 
 
 def lattice(
@@ -134,12 +147,14 @@ def lattice(
     sites = np.stack(np.meshgrid(sites_y, sites_z), axis=-1).reshape(-1, 2)
     if solid is not None:
         sites = _drawn_out(sites, pitch, solid, solid.half(outline) - reach)
-    return sites[clear_of_walls(_section(sites, solid), outline, reach, fixed, plates)] if len(sites) else sites
+    return sites[_clear(sites, outline, reach, fixed, plates, solid)] if len(sites) else sites
 
 
-def _section(points: np.ndarray, solid: Solid | None) -> np.ndarray:
-    """Points (n, axes) m in the axes in which the outline is drawn, (n, 2) m."""
-    return points if solid is None else solid.section(points)
+def _clear(sites, outline, reach, fixed, plates, solid: Solid | None) -> np.ndarray:
+    """Which sites (n, axes) m lie inside, at least `reach` (m) from what else is there."""
+    if solid is None:
+        return clear_of_walls(sites, outline, reach, fixed, plates)
+    return solid.clear(sites, outline, reach, fixed, plates)
 
 
 def _drawn_out(sites: np.ndarray, pitch: float, solid: Solid, half: float) -> np.ndarray:
@@ -215,39 +230,3 @@ def _hollow(grain, position, radius, across, outline, fixed) -> np.ndarray | Non
     places = np.column_stack([across, lands + 1e-3 * reach])[np.isfinite(lands)]
     places = places[clear_of_walls(places, outline, reach)]
     return places[places[:, 1].argmin()] if len(places) else None
-
-
-def clear_of_walls(
-    sites: np.ndarray,
-    outline: np.ndarray,
-    reach: float | np.ndarray,
-    fixed: np.ndarray = NONE_FIXED,
-    plates: Sequence[np.ndarray] = (),
-) -> np.ndarray:
-    """Which sites (n, 2) lie inside the outline, at least `reach` (m) from it, from plates and from fixed grains.
-
-    A plate that ends where it begins is a body: none lie in it.
-    """
-    clear = _inside(sites, outline)
-    for line in plates:
-        if np.array_equal(line[0], line[-1]):
-            clear &= ~_inside(sites, line)
-    edges = [(a, b) for line in (np.vstack([outline, outline[:1]]), *plates) for a, b in pairwise(line)]
-    for a, b in edges:
-        edge = b - a
-        share = np.clip((sites - a) @ edge / (edge @ edge), 0.0, 1.0)
-        distance = np.linalg.norm(sites - (a + share[:, None] * edge), axis=1)
-        clear &= distance >= reach * (1.0 - 1e-9)
-    for y, z, radius in fixed:
-        clear &= np.hypot(sites[:, 0] - y, sites[:, 1] - z) >= (reach + radius) * (1.0 - 1e-9)
-    return clear
-
-
-def _inside(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
-    """Which points (n, 2) lie inside a polygon (m, 2): a ray from there crosses its edges an odd number of times."""
-    y, z = points.T
-    odd = np.zeros(len(points), dtype=bool)
-    for (y0, z0), (y1, z1) in pairwise(np.vstack([polygon, polygon[:1]])):
-        passes = (z0 > z) != (z1 > z)
-        odd ^= passes & (((y1 - y0) * (z - z0) < (y - y0) * (z1 - z0)) == (z1 > z0))
-    return odd

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solvers.grains.materials import hertz_stiffness
-from solvers.tank.solids.solid import Solid
+from solvers.tank.solids.solid import Solid, overlaps
 
 # Elastic energy that a contact may have at the start, and may keep, relative to that which lifts the smallest grain by
 # its diameter.
@@ -50,15 +50,9 @@ class Walls:
 
     def overlaps(self, position: np.ndarray, radius: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """For each, the grains' directions (n, axes) away from its nearest point, and their overlaps (n,) m with it."""
-        section = position if self.solid is None else self.solid.section(position)
-        for a, b in self.edges:
-            along = np.clip((section - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
-            away = section - (a + along[:, None] * (b - a))
-            apart = np.maximum(np.linalg.norm(away, axis=1), 1e-12)
-            way = away / apart[:, None]
-            yield way if self.solid is None else self.solid.out_of_section(way, position), radius - apart
-        if self.solid is not None:
-            yield from self.solid.ends(position, radius)
+        if self.solid is None:
+            return overlaps(position, radius, self.edges)
+        return self.solid.overlaps(position, radius, self.edges)
 
     @property
     def period(self) -> float | None:

@@ -16,4 +16,4 @@ def make_walls(arrays: State, scene, pieces: Pieces) -> AnyWalls:
         return Walls(arrays, scene.tanks, pieces, scene.apart)
     if isinstance(scene.solid, Prism):
         return PrismWalls(arrays, scene.tanks, pieces, scene.solid)
-    return TurnedWalls(arrays, scene.tanks, pieces)
+    return TurnedWalls(arrays, scene.tanks, pieces, scene.solid)

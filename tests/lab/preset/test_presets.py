@@ -109,6 +109,8 @@ def test_a_quick_variant_states_its_differences_and_differs_only_in_cost(name, m
     if quick.grains:
         of_size = {name: getattr(whole.grains, name) for name in ("diameter", "table", "count")}
         alike["grains"] = replace(quick.grains, **of_size)
+        sized = {name: replace(kind, diameter=whole.kinds[name].diameter) for name, kind in quick.kinds.items()}
+        alike["kinds"] = sized
     if quick.water:
         alike["water"] = replace(quick.water, spacing=whole.water.spacing)
     assert replace(quick, **alike) == whole

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.assembly.grains import grain_count
+from lab.assembly.grains import _ordered, grain_count
 from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.preset.find import load
@@ -13,7 +13,12 @@ from lab.recording.layout import tables_of
 from lab.view.live import steerable
 
 WATER = {"grains": False, "material": False, "water": {"depth": "20 mm", "spacing": "5 mm"}}
-CHICKPEAS, BARGE = "space/tilting-box-quick", "space/barge-quick"
+CHICKPEAS, DRUM, BARGE = "space/tilting-box-quick", "space/drum-quick", "space/barge-quick"
+LOPSIDED = {"tank.outline": [["-0.1 m", "0 m"], ["0.1 m", "0 m"], ["0.2 m", "0.1 m"]]}
+NARROW = {"tank.outline": [["-0.1 m", "0 m"], ["0.1 m", "0 m"], ["0.1 m", "0.01 m"], ["-0.1 m", "0.01 m"]]}
+BIG = {"kinds.big.diameter": "300 mm", "kinds.big.share": 0.5, "grains.table": False, "grains.diameter": "12 mm"}
+BIG |= {"grains.distribution": "uniform", "tank.along": "1 m", "tank.height": "310 mm"}
+TABLE = {"grains.table": [["6 mm", 1], ["8 mm", 1]], "grains.distribution": "table"}
 AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
 
 
@@ -28,6 +33,20 @@ AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
         (CHICKPEAS, {"tank.along": "15 mm"}, "tank.along: must be more than one grain, 16 mm each"),
         (CHICKPEAS, {"tank.periodic": True, "tank.along": "70 mm"}, "tank.along: must be more than 5 of the largest"),
         (CHICKPEAS, {"tank.turned": True}, "tank.turned: a tank is either turned about its axis or drawn out"),
+        (CHICKPEAS, {"tank.turned": "z"}, 'tank.turned: true or false is needed (or "x")'),
+        (CHICKPEAS, {"tank.turned": "x"}, "tank.height: a tank that is turned about x is as high as it is wide"),
+        (DRUM, {"tank.along": False}, "tank.along: missing; give width and along, or an outline"),
+        (DRUM, {"tank.periodic": True}, "tank.periodic: a tank that is turned about x has end walls"),
+        (DRUM, {"tank.lid": False}, "tank.lid: this outline has no edge along its top to leave open"),
+        (DRUM, {"tank.along": "10 mm"}, "tank.along: must be more than one grain, 12 mm each"),
+        (DRUM, {**LOPSIDED, "tank.width": False, "tank.along": False}, "tank.outline: a tank that is turned about x"),
+        (DRUM, {**NARROW, "tank.width": False, "tank.along": False}, "tank.outline: its 10 mm along x must be more"),
+        (DRUM, {"parts.vane.points": [["0 mm", "0 mm"], ["0 mm", "9 mm"]]}, "parts.vane: no parts stand in a tank"),
+        (DRUM, {"grains.count": 12_000}, "grains.count: 12000 grains do not fit into the tank"),
+        (DRUM, {"kinds": False}, "grains.layered: kinds of grains that are poured start in layers; add a table"),
+        (DRUM, {"grains.surface": "disturbed"}, "grains.layered: layers settle as they lie"),
+        (DRUM, {**TABLE, "grains.diameter": False}, "kinds.small.diameter: grains.table says how large grains are"),
+        (CHICKPEAS, {**BIG, "material.restitution": 0.5}, "kinds.big.diameter: grains of up to 300 mm do not fit"),
         ("tilting/quick", {"tank.periodic": True}, "tank.periodic: goes with the length of a slice; give tank.along"),
         ("tilting/quick", {"contact.twisting": "marshall"}, "contact.twisting: grains twist in space alone"),
         ("space/silo", {"parts.left": False}, "parts.right.points: in a tank that is turned each part has its like"),
@@ -61,7 +80,10 @@ def test_a_recording_has_three_axes():
     assert content(to_table(load("tilting/quick").resolved)).axes == 2
 
 
-@pytest.mark.parametrize("preset", ["space/tilting-box-quick", "space/slice-quick", "space/silo-quick"])
+QUICK = ["space/tilting-box-quick", "space/slice-quick", "space/silo-quick", "space/drum-quick"]
+
+
+@pytest.mark.parametrize("preset", QUICK)
 def test_a_bed_starts_within_its_tank_without_overlaps(preset):
     """And a depth takes the grains that fill its volume to 57 %."""
     from scipy.spatial import cKDTree
@@ -74,9 +96,7 @@ def test_a_bed_starts_within_its_tank_without_overlaps(preset):
     pairs = cKDTree(place).query_pairs(2.0 * radius.max(), output_type="ndarray")
     apart = np.linalg.norm(place[pairs[:, 0]] - place[pairs[:, 1]], axis=1)
     assert not np.any(apart < radius[pairs % len(radius)].sum(axis=1) * (1.0 - 1e-9))
-    section = scene.solid.section(position[0])
-    assert np.all(section[:, 1] > radius * (1.0 - 1e-9))
-    assert np.all(np.abs(section[:, 0]) < scene.outline[:, 0].max())
+    assert np.all(scene.solid.clear(position[0], scene.outline, radius))
     if loaded.grains.depth:
         volume = loaded.tank.along * 0.3 * loaded.grains.depth
         share = np.pi / 6.0 * loaded.sizes.mean_cube * len(radius) / volume
@@ -90,6 +110,16 @@ def test_a_ship_carries_the_plane_s_cargo_in_space():
     np.testing.assert_allclose(a_metre, a_metre[0], rtol=1e-3)
     hold = load(BARGE, {"ship.length": "1 m", "tank.length": "500 mm"}).resolved
     assert hold.a_metre == pytest.approx(0.5 / 0.06)
+
+
+def test_kinds_of_grains_lie_in_layers_each_with_its_size():
+    """In a drum 8 of 38 are large, below; and the small ones above them are closer together than a large one."""
+    scene, position = build(load("space/drum-quick").resolved)
+    radius, kind, height = scene.grains.radius[0], scene.grains.kind[0], position[0][:, 1]
+    assert np.bincount(kind).tolist() == [296, 1111]
+    np.testing.assert_allclose(radius, np.array([6e-3, 3e-3])[kind])
+    assert (height + radius)[kind == 0].max() < (height - radius)[kind == 1].min()
+    assert np.bincount(_ordered(load("space/drum").resolved, 38_000)).tolist() == [8000, 30_000]
 
 
 def test_a_scene_in_space_is_not_steered():

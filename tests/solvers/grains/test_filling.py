@@ -7,7 +7,6 @@ import pytest
 
 from solvers.grains.bed.filling import (
     DoesNotFit,
-    _inside,
     count_for_depth,
     headroom,
     lattice,
@@ -18,6 +17,7 @@ from solvers.grains.bed.filling import (
 from solvers.grains.bed.sizes import Sizes
 from solvers.motion import Sway
 from solvers.simulation import Simulation
+from solvers.tank.outline import inside as inside_by_rays
 from solvers.tank.outline import lining, raised
 from tests.oracles.given import scene_of
 from tests.oracles.scenes import box, material
@@ -244,7 +244,7 @@ def test_points_inside_an_outline_are_those_that_matplotlib_finds_either_way_rou
 
     points = np.random.default_rng(3).uniform(outline.min(axis=0) - 0.05, outline.max(axis=0) + 0.05, (2000, 2))
     for way in (outline, outline[::-1]):
-        found = _inside(points, way)
+        found = inside_by_rays(points, way)
         assert found.any() and not found.all()
         assert (found == Path(way).contains_points(points)).all()
 

@@ -7,13 +7,15 @@ from scipy.spatial import cKDTree
 
 from solvers.machine import runtime
 from solvers.machine.state import State
-from solvers.tank.solids.solid import Turned
+from solvers.tank.solids.solid import Lying, Turned
 from solvers.tank.solids.turned import TurnedWalls
 from solvers.tank.tank import Tank
 
 # A silo: barrel and cone, open above and below
 SILO = np.array([[-0.1, 0.0], [0.1, 0.0], [0.4, 0.4], [0.4, 0.9], [-0.4, 0.9], [-0.4, 0.4]])
 OPEN = (0, 3)
+# A drum with a cone at one end, across its axis and along it
+DRUM = np.array([[-0.4, -0.1], [0.4, -0.1], [0.4, 0.2], [0.1, 0.6], [-0.1, 0.6], [-0.4, 0.2]])
 FINE = 4e-3  # m, between points on the surfaces
 FACED = 1e20
 
@@ -34,6 +36,18 @@ def gaps(walls: ti.template(), points: ti.types.ndarray(), found: ti.types.ndarr
                 found[n, feature, k] = one[k]
 
 
+def asked(solid, outline, points, open_edges=()):
+    """Gaps and normals of all features for points (n, 3) m."""
+    runtime.initialise(1)
+    arrays = State()
+    walls = TurnedWalls(arrays, [Tank(outline, 1.0, open_edges=open_edges)], Still(), solid)
+    arrays.finish()
+    found = np.zeros((len(points), walls.features, 4))
+    gaps(walls, points, found)
+    arrays.release()
+    return found
+
+
 def surface():
     """Points (n, 3) m on the barrel and the cone, in the order y, z, x."""
     rings = []
@@ -47,14 +61,8 @@ def surface():
 
 def test_the_nearest_feature_of_a_silo_is_its_nearest_wall():
     """From within and from outside. A point of the grid is up to half a diagonal aside, more so where it is curved."""
-    runtime.initialise(1)
-    arrays = State()
-    walls = TurnedWalls(arrays, [Tank(SILO, 1.0, open_edges=OPEN)], Still())
-    arrays.finish()
     points = np.random.default_rng(3).uniform([-0.6, -0.3, -0.6], [0.6, 1.2, 0.6], (4000, 3))
-    found = np.zeros((len(points), walls.features, 4))
-    gaps(walls, points, found)
-    arrays.release()
+    found = asked(Turned(), SILO, points, OPEN)
     nearest = found[..., 0].argmin(axis=1)
     gap, normal = found[np.arange(len(points)), nearest, 0], found[np.arange(len(points)), nearest, 1:]
     tree = cKDTree(surface())
@@ -75,3 +83,42 @@ def test_its_volume_is_that_of_a_cone_and_a_cylinder(deep):
     radius = 0.1 + 0.75 * low
     expected = np.pi * low / 3.0 * (0.1**2 + 0.1 * radius + radius**2) + np.pi * 0.4**2 * max(deep - 0.4, 0.0)
     assert Turned().volume(SILO, deep) == pytest.approx(expected, rel=1e-6)
+
+
+def test_the_gaps_of_a_lying_drum_are_those_from_its_barrel_its_ends_and_its_cone():
+    """By the closed forms of a cylinder, planes and a cone, from within, normals too."""
+    drum = Lying(tuple(map(tuple, DRUM.tolist())))
+    points = np.random.default_rng(5).uniform([-0.4, -0.4, -0.1], [0.4, 0.4, 0.6], (4000, 3))
+    points = points[drum.clear(points, drum.round_outline, 0.0)]
+    found = asked(drum, drum.round_outline, points)
+    found[..., 0] = np.where(found[..., 0] < FACED, found[..., 0], np.inf)
+    away, x = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
+    slant = np.array([-0.8, -0.6])  # the cone's normal inward, across the axis and along it
+    walls = [
+        (0.4 - away, np.tile([-1.0, 0.0], (len(points), 1))),
+        (x + 0.1, np.tile([0.0, 1.0], (len(points), 1))),
+        (0.6 - x, np.tile([0.0, -1.0], (len(points), 1))),
+        ((away - 0.4) * slant[0] + (x - 0.2) * slant[1], np.tile(slant, (len(points), 1))),
+    ]
+    gap = np.array([one for one, _ in walls])
+    which = gap.argmin(axis=0)
+    np.testing.assert_allclose(found[..., 0].min(axis=1), gap.min(axis=0), atol=1e-12)
+    flat = np.array([normal for _, normal in walls])[which, np.arange(len(points))]
+    expected = np.column_stack([points[:, :2] / away[:, None] * flat[:, :1], flat[:, 1]])
+    nearest = found[..., 0].argmin(axis=1)
+    np.testing.assert_allclose(found[np.arange(len(points)), nearest, 1:], expected, atol=1e-9)
+    assert set(which) == {0, 1, 2, 3}
+
+
+@pytest.mark.parametrize("deep", [0.1, 0.4, 0.65, 0.8])
+def test_the_volume_in_a_lying_drum_is_that_of_segments_of_its_circles(deep):
+    """Against points on a fine grid, of which a share lies in it; half full and full by the closed form."""
+    drum = Lying(tuple(map(tuple, DRUM.tolist())))
+    whole = np.pi * (0.4**2 * 0.3 + 0.4 / 3.0 * (0.4**2 + 0.4 * 0.1 + 0.1**2))
+    edges = [np.linspace(low, high, 81) for low, high in ((-0.4, 0.4), (-0.4, 0.4), (-0.1, 0.6))]
+    grid = np.stack(np.meshgrid(*(0.5 * (one[1:] + one[:-1]) for one in edges), indexing="ij"), axis=-1).reshape(-1, 3)
+    inside = drum.clear(grid, drum.round_outline, 0.0) & (grid[:, 1] < deep - 0.4)
+    found = drum.volume(drum.round_outline, deep)
+    assert found == pytest.approx(0.8 * 0.8 * 0.7 * inside.mean(), rel=4e-3)
+    if deep in (0.4, 0.8):
+        assert found == pytest.approx(whole * deep / 0.8, rel=1e-6)

@@ -9,6 +9,7 @@ from lab.paint.film import Film, choose_look
 from lab.paint.space.marks import TurningAxes
 from lab.paint.space.scene import SpaceScene
 from lab.paint.space.stance import carried, rotation, turned_axes
+from lab.paint.space.walls import drawn_out, prism
 from lab.preset.find import load
 from lab.preset.sections.video import Video
 from solvers.machine.runtime import initialise
@@ -127,12 +128,12 @@ def test_the_settings_of_a_preset_hold_where_nothing_is_asked():
 
 def test_plates_move_as_they_are_recorded_in_a_plane_and_in_space():
     """A plate on the y axis, moved by 0.02 m upwards and turned by 90° about x: y becomes z."""
-    line, still = {"gate": np.array([(0.0, 0.0), (0.1, 0.0)])}, np.zeros((2, 1, 3))
+    line, still = np.array([(0.0, 0.0), (0.1, 0.0)]), np.zeros((2, 1, 3))
     shift, turn = np.array([(0.0, 0.02)]), np.array([0.5 * np.pi])
     flat = (np.stack([0.0 * shift, shift])[:, None], np.stack([0.0 * turn, turn])[:, None])
     whole = (np.pad(flat[0], [(0, 0), (0, 0), (0, 0), (0, 1)]), np.stack([0.0 * flat[1], 0.0 * flat[1], flat[1]], -1))
     for moves in (flat, whole):
-        scene = SpaceScene.of(BOX, ALONG, (), line, (still, still), moves)
+        scene = SpaceScene.of(prism(BOX, ALONG), [drawn_out(line, ALONG)], (still, still), moves)
         end = carried(scene.plates[0].points, scene.part_at(0, 0, 1.0))
         np.testing.assert_allclose(end[:, 0], 0.0, atol=1e-12)
         np.testing.assert_allclose(sorted(set(np.round(end[:, 1], 9))), [0.02, 0.12])

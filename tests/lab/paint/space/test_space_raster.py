@@ -15,7 +15,7 @@ from lab.paint.space.raster.panes import TINT
 from lab.paint.space.raster.shade import Paints
 from lab.paint.space.raster.spheres import Spheres, find_spheres
 from lab.paint.space.viewpoint import across
-from lab.paint.space.walls import FACETS, Walls, prism, turned_plate, turned_tank
+from lab.paint.space.walls import FACETS, Walls, lying_tank, prism, turned_plate, turned_tank
 from solvers.machine.runtime import initialise
 
 SKIN = Skin((250, 252, 253), (90, 98, 110), 1.0)
@@ -196,6 +196,19 @@ def test_a_turned_tank_is_seen_from_inside_and_has_the_area_of_its_cone():
     slant = ~hopper.pane
     starts = hopper.points[hopper.first[:-1]][slant] * [1.0, 0.0, 1.0]
     assert ((starts * hopper.normals[slant]).sum(axis=1) < 0.0).all()
+
+
+def test_a_lying_tank_is_seen_from_inside_and_has_the_area_of_its_barrel_and_ends():
+    """A drum about x, whichever way round its section is given."""
+    profile = np.array([(-0.1, -0.03), (0.1, -0.03), (0.1, 0.03), (-0.1, 0.03)])
+    for section in (profile, profile[::-1]):
+        tank = lying_tank(section)
+        middles = np.array([tank.points[a:b].mean(axis=0) for a, b in pairwise(tank.first)])
+        assert ((-middles * tank.normals).sum(axis=1) > 0.0).all()
+        np.testing.assert_allclose(np.hypot(*tank.points[:, :2].T).max(), 0.1)
+        np.testing.assert_allclose(sorted(set(np.round(tank.points[:, 2], 9))), [-0.03, 0.03])
+    wanted = 2.0 * FACETS * np.sin(np.pi / FACETS) * 0.1 * (0.06 + 0.1 * np.cos(np.pi / FACETS))
+    assert sum(area(tank.points[a:b]) for a, b in pairwise(tank.first)) == pytest.approx(wanted, rel=1e-9)
 
 
 def area(corners):
