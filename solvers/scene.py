@@ -147,9 +147,15 @@ class Scene:
         return [number for number, fill in enumerate(self.fills) if fill] if self.grains else []
 
     @property
+    def faces(self) -> int:
+        """How many faces of the tank bear loads of their own: in space each wall, else none."""
+        return len(self.solid.faces(np.asarray(self.outline))) if self.solid else 0
+
+    @property
     def pieces(self) -> int:
-        """How many pieces bear loads: the walls of each tank, the parts, and the fixed grains if there are any."""
-        return len(self.tanks) + len(self.parts) + sum(matter.pieces for matter in self.matters)
+        """How many pieces bear loads: the walls of each tank, in space its faces, the parts, any fixed grains."""
+        walls = self.faces or len(self.tanks)
+        return walls + len(self.parts) + sum(matter.pieces for matter in self.matters)
 
     @property
     def shares(self) -> np.ndarray | None:
@@ -157,7 +163,8 @@ class Scene:
 
         They are zero of parts that move freely, since each responds to the load on itself.
         """
-        more = [part.tank for part in self.parts] + [0] * sum(matter.pieces for matter in self.matters)
+        more = [0] * max(0, self.faces - 1) + [part.tank for part in self.parts]
+        more += [0] * sum(matter.pieces for matter in self.matters)
         found = shares_of_loads(self.tanks, self.vessels, self.axles, more)
         if found is None and self.responds:
             return np.zeros((self.worlds, self.pieces))

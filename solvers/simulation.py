@@ -70,9 +70,7 @@ class Simulation:
         self.simple = not scene.matters or (not scene.is_long and any(matter.simple for matter in scene.matters))
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
-        means = [quantity for quantity in self.sampler.quantities if quantity.mean]
-        # When last, and what the means were
-        self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
+        self.observed, self.means = 0, self.sampler.means  # when last, and what the means were
         self.place(position, *next((matter.start for matter in scene.matters if matter.start), ()))
 
     def _build(self) -> None:
@@ -92,7 +90,8 @@ class Simulation:
         sequence = Sequence(matters, self.carrier, self.parts)
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, self.parts, loads, scene.axes)
+        told = scene.axes, scene.faces
+        self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, self.parts, loads, *told)
         arrays.finish()
 
     @property
@@ -222,7 +221,7 @@ class Simulation:
     def loads(self) -> np.ndarray:
         """Forces (N) and moments (N m) of the cargo on each piece of the tank, (W, pieces, freedoms), as last observed.
 
-        The pieces are the walls of each tank, then the parts, then the fixed grains if there are any.
+        The pieces are the walls of each tank, in space its faces, then the parts, then the fixed grains if any.
         """
         return self.sampler.on_pieces.to_numpy()
 

@@ -125,6 +125,11 @@ class Preset(WithBodies):
         """Number of axes of the scene: two in the plane, three in space."""
         return self.tank.axes
 
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """Names of the faces of the tank in space; none in the plane."""
+        return self.tank.solid.faces(np.array(self.tank.corners)) if self.tank.solid else ()
+
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:
         """The grains of each shape; empty if all are discs. Raises LabError."""

@@ -68,14 +68,22 @@ def series_of(
     axled: bool = False,
     floating: bool = False,
     leaking: bool = False,
+    in_space: bool = False,
 ) -> tuple[Quantity, ...]:
     """The quantities in the series of a run with these matters.
 
-    afloat: with those of a ship; axled: of an axle; floating: of bodies that float; leaking: of water that enters.
+    afloat: with those of a ship; axled: of an axle; floating: of bodies that float; leaking: of water that enters;
+    in_space: of the faces of a tank in space.
     """
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].SERIES)
     entering = (*ship.OF_INFLOW, *inflow.SERIES), leaking
-    further = (ship.SERIES, afloat), (tank.OF_AXLE, axled), (tank.OF_BODIES, floating), entering
+    further = (
+        (tank.OF_FACES, in_space),
+        (ship.SERIES, afloat),
+        (tank.OF_AXLE, axled),
+        (tank.OF_BODIES, floating),
+        entering,
+    )
     return (TIME, *tank.SERIES, *of_matters, *(quantity for all_of, there in further if there for quantity in all_of))
 
 
@@ -88,7 +96,8 @@ def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS) -> 
 def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
     afloat, matters, names = bool(preset.ship), preset.matters, names_of(preset)
-    whole = series_of(afloat, matters, bool(preset.axle), bool(preset.bodies), bool(preset.inflow))
+    more = bool(preset.axle), bool(preset.bodies), bool(preset.inflow), preset.axes > PLANE
+    whole = series_of(afloat, matters, *more)
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
     tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
     if preset.axes > PLANE:
@@ -97,14 +106,14 @@ def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quan
 
 
 def names_of(preset: "Preset | Content", parts: Iterable[str] = ()) -> dict[str, list[str]]:
-    """The names of a preset's gauges, parts, those that float, rooms and openings, by the owners of their quantities.
+    """The names of a preset's gauges, faces, parts, bodies, rooms and openings, by the owners of their quantities.
 
     They are in the order of the columns of these quantities.
     """
     pressure, level, force = parted(preset.gauges)
     gauges = {"gauge": [*pressure], "level": [*level], "edge": [*force]}
     of_hulls = {"room": [*preset.rooms], "opening": [*preset.openings], "inlet": [*preset.inflow]}
-    return gauges | {"part": [*parts], "body": [*preset.bodies]} | of_hulls
+    return gauges | {"face": [*preset.faces]} | {"part": [*parts], "body": [*preset.bodies]} | of_hulls
 
 
 def sizes_of(

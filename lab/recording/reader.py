@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from lab.recording.contacts.table import Contacts
 
 # Arbitrary but distinct sizes, to compare shapes
-SIZES = dict(zip(OWNERS, (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37), strict=True))
+SIZES = dict(zip(OWNERS, (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41), strict=True))
 TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 
 

@@ -17,6 +17,7 @@ OWNERS = {
     "world": ("world",),
     "grain": ("world", "grain"),
     "part": ("world", "part"),
+    "face": ("world", "face"),
     "body": ("world", "body"),
     "room": ("world", "room"),
     "opening": ("world", "opening"),

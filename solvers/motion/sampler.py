@@ -21,14 +21,23 @@ class Sampler:
     The force includes that on fixed grains and on `parts`, as they are when it is read, but for those that move freely:
     what these bear, and what is aboard of them, moves them. Its moment is about the tank's origin. `loads` are the
     loads of all matters and of contacts, each on `pieces`, of what is aboard of a body in its axes; without any the
-    force is zero. `quantities` are the numbers' declarations, and `at` has the column in which each begins.
+    force is zero. `quantities` are the numbers' declarations, and `at` has the column in which each begins. Of a tank
+    in space the first `faces` pieces are its faces, whose forces are told one by one, too.
     """
 
     def __init__(
-        self, arrays: State, worlds: int, pieces: int, carrier, parts: Pieces, loads: Sequence[Load], axes: int = PLANE
+        self,
+        arrays: State,
+        worlds: int,
+        pieces: int,
+        carrier,
+        parts: Pieces,
+        loads: Sequence[Load],
+        axes: int = PLANE,
+        faces: int = 0,
     ):
         self.worlds, self.carrier, self.parts, self.loads = worlds, carrier, parts, tuple(loads)
-        self.exact, self.pieces = arrays.exact, pieces
+        self.exact, self.pieces, self.faces = arrays.exact, pieces, faces
         self.freedoms, self.moved = len(freedoms(axes)), in_plane(axes)  # all, and those in which carriers move
         self.quantities = tuple(one.within(axes) for one in tank.SERIES)
         self.at = SimpleNamespace(**places(self.quantities))
@@ -45,7 +54,16 @@ class Sampler:
     def read_and_reset(self, time: float, since: float) -> dict[str, np.ndarray]:
         """The quantities at `time` (s), `since` (s) after the last sample: (W, *shape) of each by name."""
         self.sample(time, since)
-        return parted(self.rows.to_numpy().astype(float), self.quantities)
+        found = parted(self.rows.to_numpy().astype(float), self.quantities)
+        of_faces = {quantity.name: self.on_pieces.to_numpy()[:, : self.faces] for quantity in tank.OF_FACES}
+        return found | (of_faces if self.faces else {})
+
+    @property
+    def means(self) -> dict[str, np.ndarray]:
+        """Of each quantity that is a mean over time, a zero (W, *shape)."""
+        found = {one.name: np.zeros((self.worlds, *one.shape)) for one in self.quantities if one.mean}
+        of_faces = {one.name: np.zeros((self.worlds, self.faces, self.freedoms)) for one in tank.OF_FACES}
+        return found | (of_faces if self.faces else {})
 
     @ti.kernel
     def sample(self, time: ti.f64, since: ti.f64):

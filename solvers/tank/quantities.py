@@ -17,6 +17,16 @@ FRAMES = (
     Quantity("part", "m", directions, "displacement of each moving part in the tank", per="part"),
     Quantity("part_turn", "rad", label="angle by which each part has turned in the tank", per="part", never=0.0),
 )
+OF_FACES = (
+    Quantity(
+        "face_force",
+        "N, N, N m",
+        freedoms,
+        "force of the cargo on each face of a tank in space, in the tank's axes",
+        mean=True,
+        per="face",
+    ),
+)
 OF_BODIES = (
     Quantity(
         "body_place",

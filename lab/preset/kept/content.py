@@ -32,6 +32,7 @@ class Content:
     inflow: tuple[str, ...]
     repeats: int
     axes: int
+    faces: tuple[str, ...]
 
 
 def parted(gauges: Mapping[str, G]) -> tuple[dict[str, G], ...]:

@@ -8,6 +8,7 @@ from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
 from lab.preset.kept.content import INSIDE, KINDS_OF_GAUGES, MATTERS, Content, Gauge
 from lab.preset.kept.read import keys
 from solvers.machine.quantity import PLANE, SPACE
+from solvers.tank.solids.solid import ENDS, edges_named
 
 
 def content(table: object) -> Content:
@@ -23,12 +24,15 @@ def content(table: object) -> Content:
     matters = tuple(name for name in MATTERS if has[name])
     tank = kept.get("tank", {})
     axes = SPACE if tank.get("along") or tank.get("turned") else PLANE
+    faces = edges_named(0 if axes == PLANE else len(tank.get("outline") or range(4)))
+    faces += ENDS if tank.get("along") and not (tank.get("turned") or tank.get("periodic")) else ()
     parts = kept.get("parts", {}).items()
     bodies = tuple(name for name, part in parts if part.get("density") or part.get("mass"))
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))
     openings = (f"{name}.{opening}" for name, part in parts for opening in part.get("openings") or ())
     own = has["material"], has["ship"], has["axle"], gauges
-    return Content(matters, *own, bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ())), repeats, axes)
+    room = bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ()))
+    return Content(matters, *own, *room, repeats, axes, faces)
 
 
 def _check(taken: Taken, value: object, key: str) -> None:

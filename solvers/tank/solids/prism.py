@@ -10,7 +10,7 @@ from solvers.machine.state import State
 from solvers.tank.pieces import Pieces
 from solvers.tank.solids.solid import Prism
 from solvers.tank.tank import Tank
-from solvers.tank.walls import BEYOND, NOWHERE, Walls
+from solvers.tank.walls import BEYOND, NOWHERE, Walls, faces_of
 
 # Columns of a rim's row: its start (m), then three vectors, its length (m).
 #   An edge: its direction, and the directions from it into the two walls that meet there, zero where there is none.
@@ -31,7 +31,7 @@ class PrismWalls:
 
     def __init__(self, arrays: State, tanks: Sequence[Tank], pieces: Pieces, solid: Prism):
         self.section = Walls(arrays, tanks, pieces)
-        self.tanks, self.pieces, self.parts = self.section.tanks, self.section.pieces, self.section.parts
+        self.tanks, self.parts = self.section.tanks, self.section.parts
         self.moved, self.moving, self.fastest = pieces, pieces.moving, pieces.fastest
         self.solid, self.open, self.ends = solid, self.section.open, 0 if solid.periodic else 2
         own = arrays.under("prism")
@@ -49,6 +49,12 @@ class PrismWalls:
         self.rims = own.holding("rims", rims, "rim number", own.place)
         self.drawn = self.section.features  # those of the outline and of plates
         self.features, self.real = self.drawn + self.ends + self.edges + self.points, arrays.real
+        faces = len(solid.faces(outline))
+        self.pieces = faces + self.parts
+        ends = self.count + np.arange(self.ends)
+        round_ends = np.repeat(ends, self.edges // 2), np.repeat(ends, self.points // 2)
+        bearing = np.concatenate([faces_of(self.section, outline, faces), ends, *round_ends])
+        self.bearing = own.holding("bearing", bearing, "feature", ti.i32)
 
     @property
     def said(self) -> str:
@@ -75,11 +81,8 @@ class PrismWalls:
 
     @ti.func
     def piece(self, feature):
-        """Number of the piece of a feature: the walls of the tank, ends included, come first, then the parts."""
-        found = 0
-        if feature < self.drawn:
-            found = self.section.piece(feature)
-        return found
+        """Number of the piece of a feature: the faces of the tank come first (`Prism.faces`), then the parts."""
+        return self.bearing[feature]
 
     @ti.func
     def velocity(self, feature, shift: ti.template(), y, z, x):

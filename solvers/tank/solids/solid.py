@@ -17,6 +17,14 @@ FACETS = 96  # of the outline of a round tank as seen along its axis; a multiple
 FREE = 1e-9  # of a reach: by how much a point that is clear of a wall may be nearer
 
 
+ENDS = "end 1", "end 2"
+
+
+def edges_named(count: int) -> tuple[str, ...]:
+    """Names of so many edges of an outline or a profile: edge k runs from corner k to the next."""
+    return tuple(f"edge {k + 1}" for k in range(count))
+
+
 class InSpace:
     """What solids have in common."""
 
@@ -39,6 +47,10 @@ class InSpace:
     ) -> np.ndarray:
         """Which points lie inside, at least `reach` (m) from all walls, from plates and from fixed grains."""
         return clear_of_walls(self.section(points), outline, reach, fixed, plates)
+
+    def faces(self, outline: np.ndarray) -> tuple[str, ...]:
+        """Names of the faces of the tank, whose loads are told apart: the edges of the outline, from 1."""
+        return edges_named(len(outline))
 
     def overlaps(
         self, points: np.ndarray, radius: np.ndarray, edges: np.ndarray
@@ -83,6 +95,10 @@ class Prism(InSpace):
     def half(self, outline: np.ndarray) -> float:
         """How far (m) it reaches along x on either side of the origin."""
         return 0.5 * self.along
+
+    def faces(self, outline: np.ndarray) -> tuple[str, ...]:
+        """Names of the faces: the edges of the outline, drawn out, then the end walls, at −x and at x."""
+        return edges_named(len(outline)) + (() if self.periodic else ENDS)
 
     def clear(self, points, outline, reach, fixed=NONE_FIXED, plates=()) -> np.ndarray:
         """Which points lie inside, at least `reach` (m) from all walls, from plates and from fixed grains."""
@@ -150,6 +166,10 @@ class Lying(InSpace):
     def half(self, outline: np.ndarray) -> float:
         """How far (m) it reaches along x on either side of the origin."""
         return float(np.abs(self.corners[:, 1]).max())
+
+    def faces(self, outline: np.ndarray) -> tuple[str, ...]:
+        """Names of the faces: the edges of the profile, from 1."""
+        return edges_named(len(self.corners))
 
     def clear(self, points, outline, reach, fixed=NONE_FIXED, plates=()) -> np.ndarray:
         """Which points lie inside, at least `reach` (m) from all walls."""

@@ -10,7 +10,7 @@ from solvers.machine.state import State
 from solvers.tank.pieces import Pieces
 from solvers.tank.solids.solid import Lying, Turned
 from solvers.tank.tank import Tank
-from solvers.tank.walls import Walls
+from solvers.tank.walls import Walls, faces_of
 
 SMALLEST = 1e-12  # m, the distance from the axis below which a direction across it counts as along y
 
@@ -32,9 +32,12 @@ class TurnedWalls:
         if self.lying:
             tanks = [replace(tanks[0], outline=solid.corners)]
         self.section = Walls(arrays, tanks, pieces)
-        self.tanks, self.pieces, self.parts = self.section.tanks, self.section.pieces, self.section.parts
+        self.tanks, self.parts = self.section.tanks, self.section.parts
         self.moved, self.moving, self.fastest = pieces, pieces.moving, pieces.fastest
         self.features, self.real = self.section.features, arrays.real
+        faces = len(solid.faces(tanks[0].outline))
+        self.pieces, own = faces + self.parts, arrays.under("turned")
+        self.bearing = own.holding("bearing", faces_of(self.section, tanks[0].outline, faces), "feature", ti.i32)
 
     @property
     def said(self) -> str:
@@ -57,8 +60,8 @@ class TurnedWalls:
 
     @ti.func
     def piece(self, feature):
-        """Number of the piece of a feature."""
-        return self.section.piece(feature)
+        """Number of the piece of a feature: the faces of the tank come first (`InSpace.faces`), then the parts."""
+        return self.bearing[feature]
 
     @ti.func
     def split(self, y, z, x):
