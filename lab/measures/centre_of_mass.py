@@ -1,6 +1,7 @@
-"""Where the bed's centre of mass went, in the tank's frame (y to starboard, z up).
+"""Where the bed's centre of mass went, in the tank's frame (y to starboard, z up, in space x astern).
 
-final_shift_y, final_shift_z: displacement from the settled bed at t = 0 to the last sample;
+final_shift_y, final_shift_z, in a tank with ends in space final_shift_x: displacement from the settled bed at t = 0 to
+the last sample;
 final_shift: the same length in y, counted in the world's mean grain diameter d;
 largest_shift: the largest distance from the settled centre of mass at any time.
 In an open tank they are those of the grains that have not spilled.
@@ -13,10 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, VERMILION, Sheet, band
+from lab.measures.drawing import BLUE, GREEN, VERMILION, Sheet, band
 from lab.measures.motion import driving, is_tilt
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from solvers.machine.quantity import PLANE, directions
 
 OF = "grains"
 if TYPE_CHECKING:
@@ -29,17 +31,15 @@ def applies(recording: Recording) -> bool:
 
 
 def measure(recording: Recording) -> dict[str, Value]:
-    """final_shift_y and _z (mm), final_shift (d), largest_shift (mm)."""
-    centre = recording.series["centre_of_mass"]
-    moved = centre - centre[0]
-    final = moved[-1]
-    largest = np.fmax.reduce(np.hypot(*np.moveaxis(moved, 2, 0)))
+    """final_shift_y, _z and _x (mm), final_shift (d), largest_shift (mm)."""
+    moved = _moved(recording)
+    final, axes = moved[-1], directions(moved.shape[2])
+    largest = np.fmax.reduce(np.hypot.reduce(moved, axis=2))
     notes = {"missing": "no grain is left in the tank"}
     if len(recording.open_edges):
         notes["note"] = "of the grains still in the tank"
     return {
-        "final_shift_y": over_worlds(1e3 * final[:, 0], "mm", **notes),
-        "final_shift_z": over_worlds(1e3 * final[:, 1], "mm", **notes),
+        **{f"final_shift_{axis}": over_worlds(1e3 * final[:, k], "mm", **notes) for k, axis in enumerate(axes)},
         "final_shift": over_worlds(final[:, 0] / recording.mean_diameter, "d", **notes),
         "largest_shift": over_worlds(1e3 * largest, "mm", **notes),
     }
@@ -56,15 +56,23 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
 
 
 def shift(recording: Recording) -> np.ndarray:
-    """Displacement (T, W, 2), mm, of the centre of mass from the settled bed."""
+    """Displacement (T, W, axes), mm, of the centre of mass from the settled bed."""
+    return 1e3 * _moved(recording)
+
+
+def _moved(recording: Recording) -> np.ndarray:
+    """As `shift`, in m; without x where space repeats itself along it, and no place is farther than another."""
     centre = recording.series["centre_of_mass"]
-    return 1e3 * (centre - centre[0])
+    if recording.preset.tank.periodic:
+        centre = centre[..., :PLANE]
+    return centre - centre[0]
 
 
 def draw_shift(axes: "Axes", time: np.ndarray, moved: np.ndarray) -> None:
-    """Shift (T, W, 2), mm, against time (T,), s."""
-    band(axes, time, moved[:, :, 0], BLUE, "y, to starboard")
-    band(axes, time, moved[:, :, 1], VERMILION, "z, up")
+    """Shift (T, W, axes), mm, against time (T,), s."""
+    looks = (BLUE, "y, to starboard"), (VERMILION, "z, up"), (GREEN, "x, astern")
+    for k in range(moved.shape[2]):
+        band(axes, time, moved[:, :, k], *looks[k])
     axes.set_ylabel("shift of the centre of mass\nin the tank (mm)")
     axes.set_xlabel("time (s)")
 
