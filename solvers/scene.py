@@ -16,6 +16,7 @@ from solvers.matters import limits_of
 from solvers.motion.axle import Axle
 from solvers.motion.carrier import limits_of_carrier, shares_of_loads
 from solvers.motion.contact_pairs import limits_of_contacts
+from solvers.motion.frame import OF_SPACE, is_turn
 from solvers.ship.vessel import Vessel
 from solvers.tank.given import Given
 from solvers.tank.parts import Part
@@ -211,10 +212,17 @@ class Scene:
         speed = max((part.fastest() for part in self.parts), default=0.0)
         for motion in (m for world in self.motions for m in world):
             fastest, lever = motion.fastest(self.soft_start), 1.0
-            if motion.coordinate == "turn":
-                lever = float(np.linalg.norm(corners - np.asarray(motion.centre), axis=1).max())
+            if is_turn(motion.coordinate):
+                lever = self._lever(motion, corners)
             speed = max(speed, fastest * lever)
         return speed
+
+    def _lever(self, motion, corners: np.ndarray) -> float:
+        """Largest distance (m) of a tank's corner (n, 2) from the axis about which a motion turns."""
+        if motion.coordinate not in OF_SPACE:
+            return float(np.linalg.norm(corners - np.asarray(motion.centre), axis=1).max())
+        across = corners[:, 1 if motion.coordinate == "pitch" else 0] - motion.centre[0]
+        return float(np.hypot(np.abs(across).max(), self.solid.half(self.outline) + abs(motion.centre[1])))
 
     def step_limits(self, speed: float | None = None) -> list[Limit]:
         """Bounds on the step, the tightest first: those of the matters, without any those of ships or axles.

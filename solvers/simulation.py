@@ -61,9 +61,8 @@ class Simulation:
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
-        self.largest_multiple = (
-            max(largest_multiple, *(matter.soft_multiple for matter in scene.matters), 1) if alone else 1
-        )
+        most = max(largest_multiple, *(matter.soft_multiple for matter in scene.matters), 1)
+        self.largest_multiple = most if alone else 1
         self.vectors = min((matter.lanes(scene.precision) for matter in scene.matters), default=wide.lanes())
         self.steps, self.room, self.among, self.skin = 0, 1, worlds, skin  # `among`: worlds at the start
         # Short kernels; and of discs beside water, 1.4 times as fast so, but not the longest ones, which take minutes
@@ -86,7 +85,8 @@ class Simulation:
         loads = [*(matter.load for matter in matters), *self.parts.bodies.own_loads]
         for carrier in (self.carrier, self.parts.bodies):
             carrier.bear(loads)
-        self.clock = Clock(arrays, context.units(max((matter.in_bands for matter in scene.matters), default=0)))
+        cut = max((one.in_bands for one in scene.matters), default=0)
+        self.clock = Clock(arrays, context.units(cut), self.carrier.numbers)
         sequence = Sequence(matters, self.carrier, self.parts)
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)

@@ -17,6 +17,7 @@ from lab.report import coarse, free, grains, water
 from lab.report.ship import describe
 from solvers.fluid.timestep import steps_of_water
 from solvers.machine.runtime import available_cores, choose_arch
+from solvers.motion.frame import is_turn
 from solvers.motion.history import Recorded
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
@@ -173,7 +174,7 @@ def _tank(preset, scene) -> str:
 
 
 def _motion(name: str, motion, soft_start: float) -> str:
-    turns = motion.coordinate == "turn"
+    turns = is_turn(motion.coordinate)
     words = f"{name}, up to {show(motion.fastest(soft_start), 'rad/s' if turns else 'm/s')}"
     if isinstance(motion, Recorded):
         words += f" and {motion.hardest():.3g} {'rad' if turns else 'm'}/s²"

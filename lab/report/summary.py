@@ -18,7 +18,7 @@ from lab.preset.units import show
 from lab.recording import Recording, ship_end
 from lab.report import grains, ship, water
 from lab.report.numbers import RULE, count_of, number, own
-from solvers.motion import MOTIONS
+from solvers.motion import OF_TANK
 
 # The measures that answer the question of an experiment, the most important first; a run has only some of them.
 TELLING = (
@@ -225,7 +225,7 @@ def _scene(recording: Recording) -> Iterator[str]:
     yield f"tank {width} wide and {height} high{lidless}{rough}"
     if recording.parts:
         yield f"moving parts: {inline(', '.join(recording.parts))}"
-    for name in MOTIONS:
+    for name in OF_TANK:
         if motion := getattr(recording.preset.motion, name):
             yield f"{name}: {_settings(motion)}"
     if recording.preset.ship:

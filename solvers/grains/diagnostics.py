@@ -120,13 +120,23 @@ class Diagnostics:
         self.write_row(w, time, sums, contacts)
 
     @ti.func
+    def height(self, w, time, centre: ti.template()):
+        """Height (m) over the earth of a point of the tank."""
+        found = ti.cast(0.0, self.exact)
+        if ti.static(self.carrier.spatial):
+            found = self.carrier.height(w, time, centre)
+        else:
+            pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
+            if ti.static(self.carrier.moving):
+                pose = self.carrier.kinematics(w, time)
+            found = pose[1] + ti.sin(pose[2]) * centre[0] + ti.cos(pose[2]) * centre[1]
+        return found
+
+    @ti.func
     def write_row(self, w, time, sums, contacts):
         mass = ti.max(sums[MASS], 1e-30)
         centre = [sums[MOMENT + a] / mass for a in ti.static(range(self.grains.axes))]
-        pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
-        if ti.static(self.carrier.moving):
-            pose = self.carrier.kinematics(w, time)
-        height = pose[1] + ti.sin(pose[2]) * centre[0] + ti.cos(pose[2]) * centre[1]
+        height = self.height(w, time, centre)
         for a in ti.static(range(self.grains.axes)):
             self.rows[w, self.at.centre_of_mass + a] = centre[a]
         self.rows[w, self.at.kinetic] = sums[KINETIC]

@@ -53,6 +53,6 @@ def make_grains(scene, context: Context) -> GrainMatter:
         contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
     if hold:
         hold.take(load)
-    mover = Mover(arrays, units, grains, integrator, context.carrier.rotating, hold)
+    mover = Mover(arrays, units, grains, integrator, context.carrier, hold)
     context = replace(context, carrier=hold or context.carrier)
     return GrainMatter(scene, context, load, grains, neighbours, contacts, mover)

@@ -4,19 +4,22 @@ import taichi as ti
 
 from solvers.grains.shapes.pose import towards
 from solvers.grains.state import GrainState
-from solvers.machine.quantity import PLANE
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.space.axes import cross
 
 RATE, RISE = 2, 3  # of the tank's frame
+TURNING, RISING = 3, 6  # in space: where its rate of turning begins, and that rate's own
 
 
 @ti.data_oriented
 class Mover:
-    """Moves grains, in a tank that may be `rotating`, or aboard a free body that the `hold` is of."""
+    """Moves grains, in a tank that a `carrier` moves, or aboard a free body that the `hold` is of."""
 
-    def __init__(self, arrays: State, units: Units, grains: GrainState, integrator, rotating: bool, hold=None):
-        self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
+    def __init__(self, arrays: State, units: Units, grains: GrainState, integrator, carrier, hold=None):
+        self.units, self.grains, self.integrator = units, grains, integrator
+        self.rotating, self.spatial = carrier.rotating, carrier.spatial
         self.hold, self.is_aboard = hold, hold is not None
         names = (f"extra.{k}" for k in range(integrator.extra * (grains.axes + grains.turns)))
         self.extra = arrays.under("mover").reals(grains.each, *names)
@@ -81,7 +84,9 @@ class Mover:
         """
         b = [body[a] if ti.static(a < PLANE) else ti.cast(0.0, g.real) for a in ti.static(range(g.axes))]
         spin_up = [ti.cast(0.0, g.real) for _ in ti.static(range(g.turns))]
-        if ti.static(self.rotating):
+        if ti.static(self.spatial):
+            self.feel_in_space(g, w, i, body, b, spin_up)
+        elif ti.static(self.rotating):
             y, z = ti.cast(g.place[0][w, i], g.real), ti.cast(g.place[1][w, i], g.real)
             rate, rise = body[RATE], body[RISE]
             b[0] += rise * z + rate * (rate * y + 2.0 * g.now[1][w, i])
@@ -90,6 +95,23 @@ class Mover:
             if ti.static(g.axes > PLANE):
                 spin_up[0], spin_up[1] = rate * g.spin_now[1][w, i], -rate * g.spin_now[0][w, i]
         return b, spin_up
+
+    @ti.func
+    def feel_in_space(self, g: ti.template(), w, i, body: ti.template(), b: ti.template(), spin_up: ti.template()):
+        """As `felt`, of a tank with all six freedoms: b − ω̇ × r − ω × (ω × r + 2 u), and −ω̇ − ω × s of the spin s.
+
+        `body` = (b, ω, ω̇) in the tank's axes; the lists `b` and `spin_up` are filled.
+        """
+        place = [ti.cast(g.place[a][w, i], g.real) for a in ti.static(range(SPACE))]
+        rate = [body[TURNING + a] for a in ti.static(range(SPACE))]
+        rise = [body[RISING + a] for a in ti.static(range(SPACE))]
+        around = cross(rate, place)
+        within = cross(rate, [around[a] + 2.0 * g.now[a][w, i] for a in ti.static(range(SPACE))])
+        swung = cross(rise, place)
+        carried = cross(rate, [g.spin_now[a][w, i] for a in ti.static(range(SPACE))])
+        for a in ti.static(range(SPACE)):
+            b[a] = body[a] - swung[a] - within[a]
+            spin_up[a] = -rise[a] - carried[a]
 
     @ti.func
     def gain(self, g: ti.template(), w, i, force: ti.template(), kick, dt):

@@ -105,6 +105,7 @@ class OnAxle:
 
     rotating = moving = responds = True
     has_multiples = False  # leapfrog needs steps of one length
+    spatial, numbers = False, 4  # it moves in the plane; of a frame
 
     def __init__(self, arrays: State, axles: Sequence[Axle], gravity: float, thickness: float):
         self.share = np.array([axle.share(thickness) for axle in axles])

@@ -8,7 +8,9 @@ from solvers.machine.limit import Limit
 from solvers.machine.state import State
 from solvers.motion.axle import Axle, OnAxle
 from solvers.motion.floating_ships import FloatingShips
+from solvers.motion.frame import OF_SPACE
 from solvers.motion.prescribed import Prescribed
+from solvers.motion.prescribed_in_space import PrescribedInSpace
 from solvers.motion.staggered_ships import StaggeredShips
 from solvers.ship.vessel import Vessel
 from solvers.tank.tank import Tank
@@ -19,7 +21,9 @@ def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: flo
     return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
 
 
-def make_carrier(arrays: State, scene, dt: float) -> Prescribed | FloatingShips | StaggeredShips | OnAxle:
+def make_carrier(
+    arrays: State, scene, dt: float
+) -> Prescribed | PrescribedInSpace | FloatingShips | StaggeredShips | OnAxle:
     """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
@@ -27,7 +31,9 @@ def make_carrier(arrays: State, scene, dt: float) -> Prescribed | FloatingShips 
         return kind(arrays, scene.vessels, scene.gravity, every, scene.fluid is not None)
     if scene.axles:
         return OnAxle(arrays, scene.axles, scene.gravity, scene.tanks[0].thickness)
-    return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)
+    of_space = any(motion.coordinate in OF_SPACE for motion in scene.motions[0])
+    kind = PrescribedInSpace if of_space else Prescribed
+    return kind(arrays, scene.motions, scene.soft_start, scene.gravity)
 
 
 def shares_of_loads(

@@ -1,4 +1,4 @@
-"""Harmonic sway, heave and roll, q(t) = D(t/T) A sin(2πft + phase), with the soft start D of the thesis."""
+"""Harmonic motions, q(t) = D(t/T) A sin(2πft + phase), with the soft start D of the thesis."""
 
 from dataclasses import dataclass
 from math import pi
@@ -48,7 +48,7 @@ def harmonic(table: ti.template(), w, first, t):
 
 
 class Harmonic:
-    """Common base of sway, heave and roll."""
+    """Common base of all harmonic motions."""
 
     state = staticmethod(harmonic)
 
@@ -102,6 +102,24 @@ class Heave(Harmonic):
 
 
 @dataclass(frozen=True)
+class Surge(Harmonic):
+    """x = D(t/T) A sin(2π f t + ε) (Spandonidis 2016, appendix F): harmonic motion of a tank in space along x, astern.
+
+    D is the soft start (`soft_start`) of the length T, A the `amplitude`, f the `frequency`, ε the `phase`.
+
+    Limits: none; the motion is prescribed, and the cargo does not act back on it.
+
+    Units: x and A m, f Hz, ε rad, t and T s.
+    """
+
+    amplitude: Annotated[float, Unit("m"), Interval(gt=0), Usual(0.0, 0.1, "mm"), Doc("Half the way to and fro.")]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0), Usual(0.1, 4.0, "Hz"), Doc("Periods a second.")]
+    phase: Annotated[float, Unit("rad"), Doc("Phase at the start; 0 starts from the middle.")] = 0.0
+
+    coordinate = "x"
+
+
+@dataclass(frozen=True)
 class Roll(Harmonic):
     """φ = D(t/T) A sin(2π f t + ε) (Spandonidis 2016, appendix F): harmonic turning of the tank about a fixed point.
 
@@ -121,3 +139,49 @@ class Roll(Harmonic):
     )
 
     coordinate = "turn"
+
+
+@dataclass(frozen=True)
+class Pitch(Harmonic):
+    """θ = D(t/T) A sin(2π f t + ε) (Spandonidis 2016, appendix F): turning of a tank in space about y, bow up.
+
+    The axis goes through a fixed point. D is the soft start (`soft_start`) of the length T, A the `amplitude`, f the
+    `frequency`, ε the `phase`.
+
+    Limits: none; the motion is prescribed, and the cargo does not act back on it.
+
+    Units: θ and A rad, f Hz, ε rad, t and T s.
+    """
+
+    amplitude: Annotated[float, Unit("rad"), Interval(gt=0), Usual(0.0, pi / 4, "deg"), Doc("Largest angle.")]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0), Usual(0.1, 3.0, "Hz"), Doc("Periods a second.")]
+    phase: Annotated[float, Unit("rad"), Doc("Phase at the start; 0 starts from the middle.")] = 0.0
+    centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, z and x, about which the tank turns.")] = (
+        0.0,
+        0.0,
+    )
+
+    coordinate = "pitch"
+
+
+@dataclass(frozen=True)
+class Yaw(Harmonic):
+    """ψ = D(t/T) A sin(2π f t + ε) (Spandonidis 2016, appendix F): turning of a tank in space about z, bow to port.
+
+    The axis goes through a fixed point. D is the soft start (`soft_start`) of the length T, A the `amplitude`, f the
+    `frequency`, ε the `phase`.
+
+    Limits: none; the motion is prescribed, and the cargo does not act back on it.
+
+    Units: ψ and A rad, f Hz, ε rad, t and T s.
+    """
+
+    amplitude: Annotated[float, Unit("rad"), Interval(gt=0), Usual(0.0, pi / 4, "deg"), Doc("Largest angle.")]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0), Usual(0.1, 3.0, "Hz"), Doc("Periods a second.")]
+    phase: Annotated[float, Unit("rad"), Doc("Phase at the start; 0 starts from the middle.")] = 0.0
+    centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, y and x, about which the tank turns.")] = (
+        0.0,
+        0.0,
+    )
+
+    coordinate = "yaw"

@@ -1,4 +1,4 @@
-"""Recorded motion: smooth curves through samples of sway, heave and roll at any spacing."""
+"""Recorded motion: smooth curves through samples of sway, heave, surge, roll, pitch and yaw at any spacing."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +14,7 @@ from solvers.motion.harmonic import STEEPEST, soft_start
 LEAST_SAMPLES = 4  # needed for a cubic spline
 HEAD = 2  # numbers in the kernel's table before the pieces
 PIECE = 5  # numbers per piece: the time at which it begins, and its four coefficients
+COORDINATES = {"roll": "turn", "pitch": "pitch", "yaw": "yaw", "sway": "y", "heave": "z", "surge": "x"}
 SLOW = 0.05  # of the largest speed: a record counts as at rest at an end if it is slower there
 
 
@@ -49,13 +50,14 @@ def recorded(table: ti.template(), w, first, t):
 
 @dataclass(frozen=True)
 class Recorded:
-    """Motion of one coordinate ("y", "z" or "turn") through `values` (m or rad) at the rising times `time` (s).
+    """Motion of one coordinate through `values` (m or rad) at the rising times `time` (s).
 
-    The first sample is at the start of the motion. The samples are joined by the cubic spline with continuous
-    acceleration (de Boor 1978, A Practical Guide to Splines, chapter IV). At an end where the record is at rest the
-    spline's slope is zero, so that the tank starts or stops without a jump of its speed. At any other end the spline
-    follows the record's own speed ("not a knot"), since a zero slope would add a jolt that was not recorded. After the
-    last sample the tank keeps its last speed, which is zero if the record comes to rest.
+    It is "y", "z" or "turn", in space also "x", "pitch" or "yaw". The first sample is at the start of the motion. The
+    samples are joined by the cubic spline with continuous acceleration (de Boor 1978, A Practical Guide to Splines,
+    chapter IV). At an end where the record is at rest the spline's slope is zero, so that the tank starts or stops
+    without a jump of its speed. At any other end the spline follows the record's own speed ("not a knot"), since a zero
+    slope would add a jolt that was not recorded. After the last sample the tank keeps its last speed, which is zero if
+    the record comes to rest.
     """
 
     coordinate: str
@@ -119,20 +121,27 @@ def _largest(curve) -> float:
 
 @dataclass(frozen=True)
 class History:
-    """Recorded sway, heave (m) and roll (rad) of the tank at common times (s); None for one that was not recorded."""
+    """Recorded motions of the tank at common times (s), m or rad; None for one that was not recorded.
+
+    It rolls about `centre` (y, z), and in space pitches and yaws about the same point, x = 0.
+    """
 
     time: Annotated[tuple[float, ...], Unit("s")]
     sway: Annotated[tuple[float, ...] | None, Unit("m")] = None
     heave: Annotated[tuple[float, ...] | None, Unit("m")] = None
     roll: Annotated[tuple[float, ...] | None, Unit("rad")] = None
     centre: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
+    surge: Annotated[tuple[float, ...] | None, Unit("m")] = None
+    pitch: Annotated[tuple[float, ...] | None, Unit("rad")] = None
+    yaw: Annotated[tuple[float, ...] | None, Unit("rad")] = None
 
     @cached_property
     def motions(self) -> dict[str, Recorded]:
-        """The recorded motions by name, innermost first: the tank rolls about a centre that sways and heaves."""
-        coordinates = {"roll": "turn", "sway": "y", "heave": "z"}
+        """The recorded motions by name, innermost first: it turns about a centre that sways, heaves and surges."""
+        y, z = self.centre
+        centres = {"pitch": (z, 0.0), "yaw": (y, 0.0)}
         return {
-            name: Recorded(coordinate, self.time, getattr(self, name), self.centre)
-            for name, coordinate in coordinates.items()
+            name: Recorded(coordinate, self.time, getattr(self, name), centres.get(name, self.centre))
+            for name, coordinate in COORDINATES.items()
             if getattr(self, name) is not None
         }

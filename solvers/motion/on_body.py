@@ -45,7 +45,7 @@ class OnBody:
     (s), with `former` the load as its last step began; `done` counts the grains' steps in a step of the body.
     """
 
-    moving = True
+    moving, spatial = True, False
 
     def __init__(self, arrays: State, scene, bodies: FreeBodies, carrier):
         self.bodies, self.gravity, self.exact, self.every = bodies, carrier.gravity, arrays.exact, bodies.every

@@ -6,16 +6,11 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine.state import State, roomy
-from solvers.motion.frame import turned
+from solvers.motion.frame import is_turn, turned
 from solvers.motion.steered import Steered
 
 ANY = 2**30
 FEW = 16  # numbers of a motion that is a formula; a record has many
-
-
-def _centre(motion) -> tuple[float, float]:
-    """The point (m) in the earth frame about which a motion turns; the origin if it does not turn."""
-    return motion.centre if motion.coordinate == "turn" else (0.0, 0.0)
 
 
 def _roomy(numbers: list[float]) -> list[float]:
@@ -24,8 +19,8 @@ def _roomy(numbers: list[float]) -> list[float]:
 
 
 @ti.data_oriented
-class Prescribed:
-    """Prescribed motion of the tank in each of W worlds: motions applied one after the other.
+class Driven:
+    """What prescribed motions have in the plane and in space: W worlds, each with motions applied one after the other.
 
     `motions[w]` are the motions of world w, the same kinds in the same order in every world. The first is innermost:
     a tilt followed by a sway is a tilting table on a swaying deck.
@@ -34,20 +29,27 @@ class Prescribed:
     responds = False  # the motion does not respond to the cargo's load
     phases = ()  # it has no phases in a step
     has_multiples = True  # steps may have any length
+    spatial = False  # the tank moves in the plane
+    numbers = 4  # of a frame
 
     def __init__(self, arrays: State, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.exact, self.real = arrays.exact, arrays.real
         self.kinds = tuple(motions[0])
-        rows = [[_roomy([*_centre(m), *m.parameters(soft_start)]) for m in world] for world in motions]
+        rows = [[_roomy([*self.centre(m), *m.parameters(soft_start)]) for m in world] for world in motions]
         sizes = [len(p) for p in rows[0]]
         self.first = tuple(int(k) for k in np.cumsum([0, *sizes])[:-1])
-        self.rotating = any(m.coordinate == "turn" for m in self.kinds)
+        self.rotating = any(is_turn(m.coordinate) for m in self.kinds)
         self.moving = bool(self.kinds)
         own = arrays.under("motion")
         self.gravity = own.holding("gravity", np.array([gravity]), "one", own.exact)
         table = np.array([[value for p in row for value in p] for row in rows]).reshape(len(rows), -1)
         table = table if table.size else np.zeros((len(rows), 1))
         self.table = own.holding("motions", table, "world number", own.exact, kept=self.steered)
+
+    @staticmethod
+    def centre(motion) -> Sequence[float]:
+        """The point (m) in the earth frame about which a motion turns; the origin if it does not turn."""
+        return motion.centre if is_turn(motion.coordinate) else (0.0, 0.0)
 
     @property
     def steered(self) -> bool:
@@ -71,6 +73,21 @@ class Prescribed:
             table[:, first + 2] = time
             table[:, first + 3 : first + 3 + len(coefficients)] = coefficients
         self.table.from_numpy(table)
+
+    @ti.func
+    def allowed_multiple(self, w):
+        """The largest multiple of the base step: no limit."""
+        return ANY
+
+    @ti.func
+    def goes_on(self, w):
+        """Whether the world goes on: always."""
+        return True
+
+
+@ti.data_oriented
+class Prescribed(Driven):
+    """Prescribed motion of the tank in the plane."""
 
     @ti.func
     def kinematics(self, w, time):
@@ -127,13 +144,3 @@ class Prescribed:
             b = turned(-s[6], -self.gravity[0] - s[7], -s[2])
             force = ti.Vector([b[0], b[1], s[5], s[8]])
         return ti.Vector([ti.cast(force[k], self.real) for k in ti.static(range(4))])  # whole ones are not for `wide`
-
-    @ti.func
-    def allowed_multiple(self, w):
-        """The largest multiple of the base step: no limit."""
-        return ANY
-
-    @ti.func
-    def goes_on(self, w):
-        """Whether the world goes on: always."""
-        return True

@@ -86,12 +86,23 @@ class Sampler:
                         self.on_pieces[w, piece, k] = self.on_pieces[w, piece, k] + mean
                     if self.bears(w, piece):
                         total += impulse
-        pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
-        if ti.static(self.carrier.moving):
-            pose = self.carrier.kinematics(w, time)
         for k in ti.static(range(self.freedoms)):
             self.rows[w, self.at.pose + k], self.rows[w, self.at.pose_rate + k] = 0.0, 0.0
             self.rows[w, self.at.wall_force + k] = total[k] / ti.cast(since, self.exact)
+        if ti.static(self.carrier.spatial):
+            stands = self.carrier.stands(w, time)
+            for k in ti.static(range(self.freedoms)):
+                self.rows[w, self.at.pose + k] = stands[k]
+                self.rows[w, self.at.pose_rate + k] = stands[self.freedoms + k]
+        else:
+            self.sample_pose(w, time)
+
+    @ti.func
+    def sample_pose(self, w, time):
+        """Fill in pose and velocity of a tank that moves in the plane."""
+        pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
+        if ti.static(self.carrier.moving):
+            pose = self.carrier.kinematics(w, time)
         for k, own in ti.static(enumerate(self.moved)):
             self.rows[w, self.at.pose + own] = pose[k]
             self.rows[w, self.at.pose_rate + own] = pose[3 + k]

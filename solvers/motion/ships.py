@@ -26,6 +26,7 @@ class Ships(Rates):
 
     rotating = moving = responds = True
     has_multiples = False  # the ship's steps have one length
+    spatial, numbers = False, 4  # she moves in the plane; of a frame
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
         super().__init__(arrays, vessels, gravity)

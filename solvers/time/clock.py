@@ -17,17 +17,18 @@ class Clock:
 
     Bands synchronise by `says` (units,) and `arrived` (W,). The per-grain schedule reads `fastest` (W,) m/s, the
     highest speed, and `farthest` (W,) m, the largest displacement since the lists were built, now and then. `pushed`
-    (W,) m/s² is the largest frame acceleration to come, and `frame` holds the carrier's frame during a step.
+    (W,) m/s² is the largest frame acceleration to come, and `frame` holds the carrier's frame, so many
+    `numbers`, during a step.
     """
 
-    def __init__(self, arrays: State, units: Units):
+    def __init__(self, arrays: State, units: Units, numbers: int = 4):
         self.units, self.worlds, self.real = units, units.worlds, arrays.real
         own, world = arrays.under("clock"), (Axis("world", units.worlds),)
         self.step, self.status, self.arrived = own.integers(world, "step", "status", "arrived")
         self.multiple, self.before = own.integers(world, "multiple", "before")
         (self.says,) = own.integers((units.axis,), "says", kept=False)
         self.fastest, self.farthest, self.pushed = own.reals(world, "fastest", "farthest", "pushed", kept=False)
-        self.frame = own.reals(world, *(f"frame.{k}" for k in range(4)), kept=False)
+        self.frame = own.reals(world, *(f"frame.{k}" for k in range(numbers)), kept=False)
 
     def launch(self) -> None:
         """Note that the particles were placed or launched, so that their next step is the first."""

@@ -4,6 +4,7 @@ import numpy as np
 
 from lab.paint.painter import Camera, paint_strokes, paint_tank
 from lab.preset.schema import Preset
+from solvers.motion.frame import is_turn
 
 AWAY, HALF, HEAD, WIDE = (
     0.9,
@@ -77,7 +78,7 @@ def _waves_text(preset: Preset) -> str:
 
 
 def _motion_text(name: str, part: object) -> str:
-    turns = name in ("roll", "tilt")
+    turns = is_turn(part.coordinate)
     amplitude, frequency = getattr(part, "amplitude", None), getattr(part, "frequency", None)
     if amplitude is not None and frequency is not None:
         size = f"{np.degrees(amplitude):.3g}°" if turns else f"{1e3 * amplitude:.3g} mm"

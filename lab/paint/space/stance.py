@@ -6,17 +6,22 @@ That vector lies along the axis of the turn and is as long as its angle. Six num
 from functools import reduce
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 ROLL = 5  # the turn about x
 OF_PLANE = (0, 1, ROLL)  # sway, heave and roll
 
 
 def stances(pose: np.ndarray) -> np.ndarray:
-    """Stances (..., 6) of poses (..., 6), or of those in a plane (..., 3): y, z and the turn about x."""
-    if pose.shape[-1] == 6:
-        return pose
+    """Stances (..., 6) of poses (..., 6), whose angles are pitch, yaw and roll, or of those in a plane (..., 3)."""
     found = np.zeros((*pose.shape[:-1], 6))
-    found[..., OF_PLANE] = pose
+    if pose.shape[-1] == 3:
+        found[..., OF_PLANE] = pose
+        return found
+    found[...] = pose
+    if found[..., 3:ROLL].any():
+        angles = found[..., [4, 3, 5]].reshape(-1, 3)  # yaw, pitch, roll; the axes y, z, x are scipy's X, Y, Z
+        found[..., 3:] = Rotation.from_euler("YXZ", angles).as_rotvec().reshape(found[..., 3:].shape)
     return found
 
 

@@ -10,10 +10,12 @@ from lab.base.errors import LabError
 from lab.preset.fields import Columns, Table
 from lab.preset.units import parse, show
 from solvers.machine.marks import Doc, Unit
+from solvers.motion.frame import is_turn
 from solvers.motion.history import LEAST_SAMPLES, History, Recorded
 from solvers.motion.rounded import MANY, even_times, smoothed
 
 KEY = "motion.history.file"
+UNITS = {"sway": "m", "heave": "m", "roll": "rad", "surge": "m", "pitch": "rad", "yaw": "rad"}  # of its columns
 MOST_SAMPLES = 100_000
 FASTEST = 1e3  # m/s or rad/s: a faster motion probably has wrong units
 HARDEST = 1e3  # m/s² or rad/s²: a hundred g, more than any tank is shaken or dropped with; mostly noise, or wrong units
@@ -25,20 +27,20 @@ AT_ZERO = 1e-3  # of the largest displacement: a record that starts closer to ze
 
 @dataclass(frozen=True)
 class Record:
-    """A recorded motion: a CSV file with the column time and any of sway, heave and roll.
+    """A recorded motion: a CSV file with the column time and any of sway, heave, roll; in space surge, pitch, yaw too.
 
     It is smoothed within the last digit to which the file was printed (`solvers.motion.rounded`).
     """
 
     file: Annotated[
         Table,
-        Columns(("time",), ("sway", "heave", "roll"), MOST_SAMPLES),
-        Doc("CSV file with the column time and any of sway, heave and roll."),
+        Columns(("time",), tuple(UNITS), MOST_SAMPLES),
+        Doc("CSV file with the column time and any of sway, heave and roll, in space also surge, pitch and yaw."),
     ]
-    length_unit: Annotated[str | None, Doc("Unit of sway and heave in the file; m if left out.")] = None
-    angle_unit: Annotated[str | None, Doc("Unit of roll in the file; rad if left out.")] = None
+    length_unit: Annotated[str | None, Doc("Unit of sway, heave and surge in the file; m if left out.")] = None
+    angle_unit: Annotated[str | None, Doc("Unit of roll, pitch and yaw in the file; rad if left out.")] = None
     time_unit: Annotated[str | None, Doc("Unit of time in the file; s if left out.")] = None
-    centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, y and z, about which the tank rolls.")] = (
+    centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, y and z, about which the tank turns.")] = (
         0.0,
         0.0,
     )
@@ -47,7 +49,7 @@ class Record:
     def history(self) -> History:
         """The motion in SI. Raises LabError for a unit of another kind, or where nothing moves."""
         length, angle = in_si(self.length_unit, "length_unit", "m"), in_si(self.angle_unit, "angle_unit", "rad")
-        units = {"sway": length, "heave": length, "roll": angle}
+        units = {name: angle if symbol == "rad" else length for name, symbol in UNITS.items()}
         columns = {name: np.array(values) for name, values in self.file.columns.items()}
         time = columns.pop("time")
         if not columns:
@@ -87,10 +89,11 @@ def _check_units(record: Record, side: float) -> None:
         _ask(step >= SLOW, "time_unit", f"samples are {show(step, 's')} apart", ("ms", "milliseconds"), "s")
     for name, motion in history.motions.items():
         far = float(np.ptp(motion.values))
-        if name == "roll" and record.angle_unit is None:
+        turns = is_turn(motion.coordinate)
+        if turns and record.angle_unit is None:
             turned = float(np.abs(motion.values).max())
-            _ask(turned > TURNED, "angle_unit", f"roll reaches {turned:.4g} rad", ("deg", "degrees"), "rad")
-        elif name != "roll" and record.length_unit is None:
+            _ask(turned > TURNED, "angle_unit", f"{name} reaches {turned:.4g} rad", ("deg", "degrees"), "rad")
+        elif not turns and record.length_unit is None:
             moved = f"{name} goes {far:.4g} m to and fro, beside a tank of {show(side, 'm')}"
             _ask(far > FAR * side, "length_unit", moved, ("mm", "millimetres"), "m")
 
@@ -154,7 +157,7 @@ def _check_curve(name: str, motion: Recorded) -> None:
     if not usable:
         raise LabError(f"{KEY}: {name} moves too fast to be followed; look at its numbers and units.")
     if motion.hardest() > HARDEST:
-        unit, key = f"{_rate(motion)}²", "angle_unit" if motion.coordinate == "turn" else "length_unit"
+        unit, key = f"{_rate(motion)}²", "angle_unit" if is_turn(motion.coordinate) else "length_unit"
         raise LabError(
             f"{KEY}: {name} has accelerations of {motion.hardest():.3g} {unit}, and no tank is shaken by more than "
             f"{HARDEST:g} {unit}; smooth out its noise, or look at {key} and time_unit."
@@ -170,7 +173,7 @@ def in_si(unit: str | None, key: str, symbol: str) -> float:
 
 
 def _symbol(motion: Recorded) -> str:
-    return "rad" if motion.coordinate == "turn" else "m"
+    return "rad" if is_turn(motion.coordinate) else "m"
 
 
 def _rate(motion: Recorded) -> str:

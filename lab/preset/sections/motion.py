@@ -5,7 +5,7 @@ from typing import Annotated
 
 from lab.preset.sections.history import Record, check_record, check_start
 from solvers.machine.marks import Doc, Interval, Unit
-from solvers.motion import MOTIONS
+from solvers.motion import OF_TANK
 
 
 @dataclass(frozen=True)
@@ -19,13 +19,13 @@ class MotionGroup:
     @property
     def parts(self) -> dict[str, object]:
         """The motions in use by name, innermost first; those from a record are outermost."""
-        named = {name: getattr(self, name) for name in MOTIONS}
+        named = {name: getattr(self, name) for name in OF_TANK}
         used = {name: part for name, part in named.items() if part is not None}
         recorded = self.history.history.motions if self.history else {}
         return used | {f"history.{name}": part for name, part in recorded.items()}
 
 
-KINDS = [(name, kind, f"The tank's {name}.") for name, kind in MOTIONS.items()]
+KINDS = [(name, kind, f"The tank's {name}.") for name, kind in OF_TANK.items()]
 KINDS.append(("history", Record, "The tank's motion from a file."))
 Motion = make_dataclass(
     "Motion",

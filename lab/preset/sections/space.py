@@ -6,7 +6,9 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import Point
+from lab.preset.sections.motion import Motion
 from lab.preset.units import show
+from solvers.motion import IN_SPACE
 
 PLANE_ALONE = {
     "water": "water is computed in the plane alone",
@@ -25,6 +27,8 @@ def check_space(preset) -> None:
     if preset.tank.solid is None:
         if preset.contact.twisting != "none":
             raise LabError("contact.twisting: grains twist in space alone; give tank.along, or leave this out.")
+        for key in _in_space(preset.motion):
+            raise LabError(f"{key}: a tank moves so in space alone; give tank.along, or leave this out.")
         return
     for key, fault in _faults(preset):
         raise LabError(f"{key}: {fault}.")
@@ -50,6 +54,9 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     for key in ("thickness", "roughness"):
         if getattr(tank, key) is not None:
             yield f"tank.{key}", f"this is of the plane alone; leave this out, or {key_of_space}"
+    if tank.periodic:
+        for key in _in_space(preset.motion):
+            yield key, "a slice of a tank without an end moves in the plane; leave this out, or tank.periodic"
     if tank.lies:
         yield from _faults_of_lying(preset)
     elif tank.turned:
@@ -66,6 +73,13 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     if tank.along and tank.along <= largest * (SHORTEST if tank.periodic else 1.0):
         least = f"{SHORTEST:g} of the largest grains, " if tank.periodic else "one grain, "
         yield "tank.along", f"must be more than {least}{show(largest, 'm')} each (got {show(tank.along, 'm')})"
+
+
+def _in_space(motion: Motion) -> Iterator[str]:
+    """The keys of motions that the plane does not have."""
+    yield from (f"motion.{name}" for name in IN_SPACE if getattr(motion, name))
+    if motion.history:
+        yield from (f"motion.history.file: column {name}" for name in motion.history.file.columns if name in IN_SPACE)
 
 
 def _faults_of_turned(preset) -> Iterator[tuple[str, str]]:

@@ -92,10 +92,7 @@ class PerGrain:
             self.clock.fastest[w], self.clock.farthest[w], self.clock.pushed[w] = 0.0, 0.0, 0.0
             for k in range(GLIMPSES):
                 body = self.carrier.frame(w, time + ahead * k / (GLIMPSES - 1))
-                push = ti.sqrt(body[0] * body[0] + body[1] * body[1])
-                # The Coriolis acceleration turns a velocity but does not change the speed.
-                push += (ti.abs(body[3]) + body[2] * body[2]) * self.extent
-                self.clock.pushed[w] = ti.max(self.clock.pushed[w], push)
+                self.clock.pushed[w] = ti.max(self.clock.pushed[w], self.push(body))
         for k in ti.static(range(len(self.matters))):
             for u in range(self.matters[k].units.count):
                 w = self.matters[k].units.world(u)
@@ -105,6 +102,16 @@ class PerGrain:
                     ti.atomic_max(self.clock.farthest[w], self.matters[k].way(u, time))
                     if not self.matters[k].is_sound(u, speed, step):
                         self.clock.status[w] = TOO_FAST
+
+    @ti.func
+    def push(self, body):
+        """The largest acceleration (m/s²) of a frame: Coriolis' turns a velocity but does not change the speed."""
+        push, turn = ti.sqrt(body[0] * body[0] + body[1] * body[1]), ti.abs(body[3]) + body[2] * body[2]
+        if ti.static(self.carrier.spatial):
+            square = [body[k] * body[k] for k in ti.static(range(9))]
+            push = ti.sqrt(square[0] + square[1] + square[2])
+            turn = ti.sqrt(square[6] + square[7] + square[8]) + square[3] + square[4] + square[5]
+        return push + turn * self.extent
 
     @ti.kernel
     def make_lists(self, time: ti.f64, step: ti.f64):
@@ -130,7 +137,7 @@ class PerGrain:
                         self.begin(k, u, done, time, kick, step)
         for w in range(self.worlds):
             frame = self.carrier.frame(w, time)
-            for k in ti.static(range(4)):
+            for k in ti.static(range(self.carrier.numbers)):
                 self.clock.frame[k][w] = frame[k]
         for k in ti.static(range(len(self.after))):
             if ti.static(self.after[k].of_worlds):
@@ -149,7 +156,7 @@ class PerGrain:
     def end(self, k: ti.template(), u, w, done, kick, step):
         """Run phase k of `after` on unit or world u of world w, if that is running."""
         if self.clock.status[w] == RUNNING:
-            frame = ti.Vector([self.clock.frame[a][w] for a in ti.static(range(4))])
+            frame = ti.Vector([self.clock.frame[a][w] for a in ti.static(range(self.carrier.numbers))])
             self.sequence.end(k, u, done, frame, ti.cast(kick, self.real), ti.cast(step, self.real))
 
     @ti.kernel

@@ -143,7 +143,8 @@ def test_paths_are_relative_to_their_preset(preset, tmp_path, monkeypatch):
         ({"time": TIME / 6000, "sway": SWAY}, "sway moves too fast to be followed"),
         ({"time": [0, 1, 2, 3], "sway": [0, np.nan, 0, 0]}, "record.csv, line 3: sway must be a finite number"),
         ({"sway": SWAY}, "record.csv, line 1: the column time is missing."),
-        ({"time": TIME, "pitch": SWAY}, 'record.csv, line 1: unknown column "pitch"; known here: time, sway, heave,'),
+        ({"time": TIME, "tilt": SWAY}, 'record.csv, line 1: unknown column "tilt"; known here: time, sway, heave,'),
+        ({"time": TIME, "pitch": ROLL}, "column pitch: a tank moves so in space alone; give tank.along"),
     ],
 )
 def test_invalid_records_are_refused(preset, tmp_path, columns, words):

@@ -19,6 +19,7 @@ NARROW = {"tank.outline": [["-0.1 m", "0 m"], ["0.1 m", "0 m"], ["0.1 m", "0.01 
 BIG = {"kinds.big.diameter": "300 mm", "kinds.big.share": 0.5, "grains.table": False, "grains.diameter": "12 mm"}
 BIG |= {"grains.distribution": "uniform", "tank.along": "1 m", "tank.height": "310 mm"}
 TABLE = {"grains.table": [["6 mm", 1], ["8 mm", 1]], "grains.distribution": "table"}
+YAW = {"amplitude": "5 deg", "frequency": "1 Hz"}
 AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
 
 
@@ -60,6 +61,8 @@ AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
         ),
         (BARGE, {"ship.length": "1 m", "tanks.aft": AFT}, "tanks: a ship has no further tanks in space"),
         (BARGE, {"ship.length": "1 m", "tank.length": "50 mm"}, "tank.along: is longer than her hold, 50 mm"),
+        ("tilting/quick", {"motion.yaw": YAW}, "motion.yaw: a tank moves so in space alone; give tank.along"),
+        ("space/slice-quick", {"motion.yaw": YAW}, "motion.yaw: a slice of a tank without an end moves in the plane"),
     ],
 )
 def test_what_does_not_go_in_space_is_refused_in_a_sentence(preset, changes, said):
