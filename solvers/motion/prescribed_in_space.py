@@ -38,10 +38,11 @@ class PrescribedInSpace(Driven):
 
     Each turns about an axis of the earth through its centre. With roll, pitch and yaw in this order the tank's axes are
     turned by R = R_z(ψ) R_y(θ) R_x(φ), as those of ships are (Fossen 2011, Handbook of Marine Craft Hydrodynamics and
-    Motion Control, eq. 2.18, whose axes x and z point the other way, so that roll and yaw have the other sign). The
+    Motion Control, section 2.2.1, whose axes x and z point the other way, so that roll and yaw have the other sign). The
     angles recorded are these, whatever turns the tank: θ from −90 to 90 deg, ψ and φ from −180 to 180 deg.
 
-    The frame of the grains is (b, ω, ω̇) in the tank's axes, nine numbers, with b = Rᵀ(g − P̈).
+    The frame of the grains is (b, ω, ω̇) in the tank's axes, nine numbers, with b = Rᵀ(g − P̈). A grain at r with the
+    velocity u and the spin s relative to the tank feels b − ω̇ × r − ω × (ω × r + 2 u), and its spin gains −ω̇ − ω × s.
     """
 
     spatial = True

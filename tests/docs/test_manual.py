@@ -13,7 +13,7 @@ from solvers.fluid.states import STATES
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
-from solvers.motion import MOTIONS
+from solvers.motion import IN_SPACE, MOTIONS
 
 DOCS = Path(__file__).parents[2] / "docs"
 sys.path.insert(0, str(DOCS / "_ext"))
@@ -27,6 +27,7 @@ TABLES = {
     "COHESION": COHESION,
     "INTEGRATORS": INTEGRATORS,
     "MOTIONS": MOTIONS,
+    "IN_SPACE": IN_SPACE,
     "KERNELS": KERNELS,
     "STATES": STATES,
     "DIFFUSION": DIFFUSION,

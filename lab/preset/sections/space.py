@@ -6,6 +6,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import Point
+from lab.preset.sections.history import Record
 from lab.preset.sections.motion import Motion
 from lab.preset.units import show
 from solvers.motion import IN_SPACE
@@ -24,6 +25,9 @@ def check_space(preset) -> None:
     """Raise LabError, one sentence, for a key of the plane alone in a preset (`lab.preset.schema.Preset`) in space."""
     if preset.tank.periodic and not preset.tank.along:
         raise LabError("tank.periodic: goes with the length of a slice; give tank.along, or leave this out.")
+    for name, part in preset.parts.items():
+        for column in _columns_in_space(part.history):
+            raise LabError(f"parts.{name}.history.file: a part has no {column} of its own; leave out that column.")
     if preset.tank.solid is None:
         if preset.contact.twisting != "none":
             raise LabError("contact.twisting: grains twist in space alone; give tank.along, or leave this out.")
@@ -78,8 +82,12 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
 def _in_space(motion: Motion) -> Iterator[str]:
     """The keys of motions that the plane does not have."""
     yield from (f"motion.{name}" for name in IN_SPACE if getattr(motion, name))
-    if motion.history:
-        yield from (f"motion.history.file: column {name}" for name in motion.history.file.columns if name in IN_SPACE)
+    yield from (f"motion.history.file: column {column}" for column in _columns_in_space(motion.history))
+
+
+def _columns_in_space(record: Record | None) -> list[str]:
+    """The columns of a recorded motion that the plane does not have."""
+    return [name for name in record.file.columns if name in IN_SPACE] if record else []
 
 
 def _faults_of_turned(preset) -> Iterator[tuple[str, str]]:

@@ -316,3 +316,19 @@ def test_any_record_gives_a_preset_or_one_sentence(preset, rows, rising, soft):
     else:
         motion = resolved.motion.parts["history.sway"]
         assert np.isfinite(motion.parameters(1.0)).all() and np.isfinite(motion.fastest(1.0))
+
+
+def test_a_part_has_no_motion_along_x(preset, tmp_path):
+    csv(tmp_path, "part.csv", time=TIME, yaw=ROLL)
+    part = {"points": [["-5 mm", "5 mm"], ["5 mm", "5 mm"]], "history": {"file": "part.csv", "angle_unit": "deg"}}
+    said = fault(preset, parts__gate=part)
+    assert said == "parts.gate.history.file: a part has no yaw of its own; leave out that column."
+
+
+def test_a_record_may_have_all_six_motions_in_space(preset, tmp_path):
+    """In the order innermost first, in SI."""
+    csv(tmp_path, time=TIME, sway=SWAY, heave=SWAY, surge=SWAY, roll=ROLL, pitch=ROLL, yaw=ROLL)
+    motions = load(preset, {"tank.along": "40 mm"}).resolved.motion.history.history.motions
+    assert list(motions) == ["roll", "pitch", "yaw", "sway", "heave", "surge"]
+    assert [motion.coordinate for motion in motions.values()] == ["turn", "pitch", "yaw", "y", "z", "x"]
+    assert np.abs(motions["pitch"].values).max() == pytest.approx(np.radians(np.abs(ROLL).max()), rel=1e-6)
