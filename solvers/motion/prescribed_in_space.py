@@ -38,7 +38,7 @@ class PrescribedInSpace(Driven):
 
     Each turns about an axis of the earth through its centre. With roll, pitch and yaw in this order the tank's axes are
     turned by R = R_z(ψ) R_y(θ) R_x(φ), as those of ships are (Fossen 2011, Handbook of Marine Craft Hydrodynamics and
-    Motion Control, section 2.2.1, whose axes x and z point the other way, so that roll and yaw have the other sign). The
+    Motion Control, section 2.2.1; his axes x and z point the other way, so that roll and yaw have the other sign). The
     angles recorded are these, whatever turns the tank: θ from −90 to 90 deg, ψ and φ from −180 to 180 deg.
 
     The frame of the grains is (b, ω, ω̇) in the tank's axes, nine numbers, with b = Rᵀ(g − P̈). A grain at r with the

@@ -319,8 +319,8 @@ def test_any_record_gives_a_preset_or_one_sentence(preset, rows, rising, soft):
 
 
 def test_a_part_has_no_motion_along_x(preset, tmp_path):
-    csv(tmp_path, "part.csv", time=TIME, yaw=ROLL)
-    part = {"points": [["-5 mm", "5 mm"], ["5 mm", "5 mm"]], "history": {"file": "part.csv", "angle_unit": "deg"}}
+    file = str(csv(tmp_path, "part.csv", time=TIME, yaw=ROLL))
+    part = {"points": [["-5 mm", "5 mm"], ["5 mm", "5 mm"]], "history": {"file": file, "angle_unit": "deg"}}
     said = fault(preset, parts__gate=part)
     assert said == "parts.gate.history.file: a part has no yaw of its own; leave out that column."
 
