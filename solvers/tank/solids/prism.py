@@ -8,9 +8,10 @@ import taichi as ti
 from solvers.machine.quantity import SPACE
 from solvers.machine.state import State
 from solvers.tank.pieces import Pieces
+from solvers.tank.solids.bearing import faces_of
 from solvers.tank.solids.solid import Prism
 from solvers.tank.tank import Tank
-from solvers.tank.walls import BEYOND, NOWHERE, Walls, faces_of
+from solvers.tank.walls import BEYOND, NOWHERE, Walls
 
 # Columns of a rim's row: its start (m), then three vectors, its length (m).
 #   An edge: its direction, and the directions from it into the two walls that meet there, zero where there is none.

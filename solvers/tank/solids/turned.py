@@ -8,9 +8,10 @@ import taichi as ti
 
 from solvers.machine.state import State
 from solvers.tank.pieces import Pieces
+from solvers.tank.solids.bearing import faces_of
 from solvers.tank.solids.solid import Lying, Turned
 from solvers.tank.tank import Tank
-from solvers.tank.walls import Walls, faces_of
+from solvers.tank.walls import Walls
 
 SMALLEST = 1e-12  # m, the distance from the axis below which a direction across it counts as along y
 
