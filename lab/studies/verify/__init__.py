@@ -17,6 +17,7 @@ from lab.studies.verify import (
     friction,
     rolling,
     sameness,
+    turntable,
     water,
 )
 from lab.studies.verify.impacts import chung_ooi, in_space, oblique, restitution
@@ -34,6 +35,7 @@ MODULES = (
     convergence,
     frames,
     sameness,
+    turntable,
     water,
 )
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
