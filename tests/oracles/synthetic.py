@@ -11,6 +11,7 @@ from lab.preset.merge import merged
 from lab.preset.recorded import from_table, to_table
 from lab.recording import Recorder, new_recording
 from lab.recording.layout import frames_of, rows_of, series_of
+from solvers.machine.quantity import PLANE
 
 GRAINS = ("grains",)
 WIDTH, DEPTH, DIAMETER = 0.180, 0.060, 0.003  # m
@@ -53,13 +54,13 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
     return Recorder(folder, **writing)
 
 
-def sample(time: float, worlds: int = 1, **values: object) -> dict:
+def sample(time: float, worlds: int = 1, axes: int = PLANE, **values: object) -> dict:
     """A row of the series; quantities that are not given are zero."""
-    return {**_zeros(series_of(False, GRAINS), worlds), "time": time, **values}
+    return {**_zeros(series_of(False, GRAINS), worlds, axes=axes), "time": time, **values}
 
 
-def _zeros(quantities: tuple, worlds: int, count: int = 0, parts: int = 0) -> dict:
-    rows = rows_of(quantities, {"world": worlds, "grain": count, "part": parts})
+def _zeros(quantities: tuple, worlds: int, count: int = 0, parts: int = 0, axes: int = PLANE) -> dict:
+    rows = rows_of([quantity.within(axes) for quantity in quantities], {"world": worlds, "grain": count, "part": parts})
     return {name: np.zeros(shape) for name, (shape, _) in rows.items()}
 
 
@@ -68,10 +69,10 @@ def of_a_ship(worlds: int = 1, **values: object) -> dict:
     return {"ship_works": np.zeros((worlds, 4)), "capsized": [-1.0] * worlds, "flooded": [-1.0] * worlds, **values}
 
 
-def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
+def frame(time: float, worlds: int = 1, count: int = 4, axes: int = PLANE, **values: object) -> dict:
     """A picture frame without parts, or with those whose places `part` gives; what is not given is zero."""
     parts = np.shape(values["part"])[1] if "part" in values else 0
-    return {**_zeros(frames_of(False, GRAINS), worlds, count, parts), "time": time, **values}
+    return {**_zeros(frames_of(False, GRAINS), worlds, count, parts, axes), "time": time, **values}
 
 
 def record(

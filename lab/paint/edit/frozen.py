@@ -12,6 +12,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.measures.ship_frozen import frozen_voyage
 from lab.paint.footage import Bed
+from lab.paint.space.scene import scene_in_space
 from lab.recording import Recording
 
 STILL = ("velocity", "spin", "water_velocity", "air_velocity")  # what is zero in frozen cargo
@@ -64,6 +65,7 @@ def frozen_bed(bed: Bed, recording: Recording, name: str) -> Bed:
     footage.pose, footage.series_pose = (np.tile(rows[:, None], (1, worlds, 1)) for rows in (at, pose))
     footage.series_time, footage.ends = time, [end] * worlds
     footage.part, footage.part_turn = (_repeated(rows, frames) for rows in (loose.part, loose.part_turn))
+    footage.space = scene_in_space(recording.preset, footage)
     if loose.centre_of_mass is not None:
         footage.centre_of_mass = _repeated(loose.centre_of_mass, len(time))
         footage.spilled = np.zeros((len(time), worlds))

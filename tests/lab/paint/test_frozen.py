@@ -40,6 +40,24 @@ def sailed(tmp_path_factory):
     return folder
 
 
+def test_in_space_the_hold_of_the_frozen_ship_stands_as_she_does(tmp_path):
+    """From where it is as she rests; and her cargo lies as it did."""
+    preset = load("space/barge-quick", {"run.duration": f"{LASTS} s"}).resolved
+    place = np.array([[[-0.02, 0.02, 0.0], [0.0, 0.02, 0.01], [0.02, 0.02, 0.0], [0.0, 0.03, 0.0]]])
+    rest = [*preset.ship.hold_at_rest, 0.0, 0.0, 0.0]
+    with recorder(tmp_path, resolved=to_table(preset), outline=np.array(preset.tank.corners)) as writer:
+        for now in (0.0, 0.5, 1.0):
+            pose, lost = np.array([[*rest, -0.3 * now]]), [-1.0 if now < 1.0 else 1.0]
+            writer.sample(sample(now, axes=3, pose=pose, **of_a_ship(flooded=lost)))
+            writer.frame(frame(now, axes=3, pose=pose, position=place, velocity=place))
+    with open_footage(tmp_path) as footage:
+        loose, still, (time, roll, _) = beds_of(footage, tmp_path)
+        assert loose.footage.space.stance[:, 0] == pytest.approx(np.outer([0.0, 0.5, 1.0], [0, 0, 0, 0, 0, -0.3]))
+        stance = still.footage.space.series_stance[:, 0]
+        assert stance[:, 5] == pytest.approx(roll) and len(stance) == len(time)
+        assert np.abs(stance[:, :2]).max() < 0.02  # about an axis in the waterline
+
+
 def beds_of(footage, folder):
     (loose,) = choose_beds(footage)
     with open_recording(folder) as recording:
