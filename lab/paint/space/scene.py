@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +21,8 @@ class SpaceScene:
     """The tank of a footage in space, m and rad.
 
     walls: of the tank at rest; plates: the moving parts at rest, in the order of the parts; stance (F, W, 6): of the
-    tank in the frames, series_stance (T, W, 6): in the series; part_stance (F, W, P, 6): of the parts in the tank.
+    tank in the frames, series_stance (T, W, 6): in the series; part_stance (F, W, P, 6): of the parts in the tank;
+    hull: the walls of the ship round it, in its axes, None without one.
     """
 
     walls: Walls
@@ -29,6 +30,7 @@ class SpaceScene:
     stance: np.ndarray
     series_stance: np.ndarray
     part_stance: np.ndarray
+    hull: Walls | None = None
 
     @classmethod
     def of(
@@ -66,13 +68,14 @@ def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
     if solid is None:
         return None
     rest = np.zeros(6)
-    if preset.ship:  # a hold is drawn from where it is as she rests; her hull is not drawn
+    if preset.ship:  # she is drawn from where her hold is as she rests
         rest[:2] = preset.ship.hold_at_rest
     poses = [stances(pose) - rest for pose in (footage.pose, footage.series_pose)]
     moves, lines = (footage.part, footage.part_turn), footage.parts.values()
     if isinstance(solid, Prism):
         walls = prism(footage.outline, solid.along, footage.open_edges)
-        return SpaceScene.of(walls, [drawn_out(line, solid.along) for line in lines], poses, moves)
+        found = SpaceScene.of(walls, [drawn_out(line, solid.along) for line in lines], poses, moves)
+        return replace(found, hull=prism(footage.sea.hull, solid.along)) if preset.ship else found
     if isinstance(solid, Lying):
         return SpaceScene.of(lying_tank(solid.corners), [], poses, moves)
     walls = turned_tank(footage.outline, footage.open_edges)

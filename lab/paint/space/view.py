@@ -119,7 +119,11 @@ class SpaceView:
         layers = self._layers.get(part.shape) or Layers(*part.shape[:2])
         self._layers[part.shape] = layers
         if self._moves:
-            self._paint_ghost(part, layers, self.earth_camera(k, frame).shifted(*corner), space.walls, half)
+            self._paint_edges(
+                part, layers, self.earth_camera(k, frame).shifted(*corner), space.walls, half, theme.ghost
+            )
+        if space.hull is not None:
+            self._paint_edges(part, layers, camera, space.hull, half, theme.far)
         place, radius, paints = self._cargo(bed, row)
         plates = [_moved(plate, space.part_at(number, bed.world, row)) for number, plate in enumerate(space.plates)]
         walls = Walls.apart([space.walls, *plates]) if plates else space.walls
@@ -131,10 +135,12 @@ class SpaceView:
         if self.setting.overlay == "trails":
             self._paint_trails(part, layers, camera, k, frame)
 
-    def _paint_ghost(self, part: np.ndarray, layers: Layers, camera: SpaceCamera, walls: Walls, half: float) -> None:
-        """The edges of the tank at rest, behind all else."""
+    def _paint_edges(
+        self, part: np.ndarray, layers: Layers, camera: SpaceCamera, walls: Walls, half: float, colour: tuple
+    ) -> None:
+        """The edges of the tank at rest, or of a ship's hull, behind all else."""
         layers.clear(camera)
-        paint_lines_in_space(part, layers, edge_lines(camera, walls, half), self._theme.ghost)
+        paint_lines_in_space(part, layers, edge_lines(camera, walls, half), colour)
 
     def _cargo(self, bed: Bed, row: float) -> tuple[np.ndarray, np.ndarray, Paints]:
         """Places, radii and looks of the grains that are shown, and of those that line the tank."""
@@ -199,7 +205,7 @@ def _moved(plate: Walls, stance: np.ndarray) -> Walls:
 def _reach(bed: Bed, most: float) -> np.ndarray:
     """The corners of a tank, and of the box around what stands out by `most` of its size at most, (n, 3) m."""
     space, footage = bed.footage.space, bed.footage
-    points = space.walls.outmost
+    points = space.walls.outmost if space.hull is None else np.concatenate([space.walls.outmost, space.hull.points])
     low, high = points.min(axis=0), points.max(axis=0)
     if not footage.protrudes:
         return points

@@ -197,7 +197,7 @@ class Ship:
 
     @property
     def hold_at_rest(self) -> tuple[float, float]:
-        """Where the tank's origin is as she rests upright, y and z (m) from the waterline above the hull's origin."""
+        """Where the tank's origin is in the earth's axes as she rests upright, y and z (m)."""
         return self.hold[0], self.heave + self.hold[1]
 
 
