@@ -37,13 +37,13 @@ class SpaceScene:
         cls,
         walls: Walls,
         plates: Sequence[Walls],
-        poses: tuple[np.ndarray, np.ndarray],
+        where: tuple[np.ndarray, np.ndarray],
         moves: tuple[np.ndarray, np.ndarray],
     ) -> SpaceScene:
         """A tank with these walls, and plates in it.
 
-        poses: of frames (F, W, 3 or 6) and of the series; moves: displacements (F, W, P, 2 or 3) and turns (F, W, P) or
-        (F, W, P, 3) of the parts.
+        where: stances of frames (F, W, 6) and of the series; moves: displacements (F, W, P, 2 or 3) and turns (F, W, P)
+        or (F, W, P, 3) of the parts.
         """
         shift, turn = moves
         part = np.zeros((*shift.shape[:-1], 6))
@@ -52,7 +52,7 @@ class SpaceScene:
             part[..., 3:] = turn
         else:
             part[..., 5] = turn
-        return cls(walls, tuple(plates), *(stances(pose) for pose in poses), part)
+        return cls(walls, tuple(plates), *where, part)
 
     def part_at(self, number: int, world: int, row: float) -> np.ndarray:
         """The stance (6,) of a part in the tank, in a frame or between two."""
@@ -70,13 +70,13 @@ def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
     rest = np.zeros(6)
     if preset.ship:  # she is drawn from where her hold is as she rests
         rest[:2] = preset.ship.hold_at_rest
-    poses = [stances(pose) - rest for pose in (footage.pose, footage.series_pose)]
+    where = [stances(pose) - rest for pose in (footage.pose, footage.series_pose)]
     moves, lines = (footage.part, footage.part_turn), footage.parts.values()
     if isinstance(solid, Prism):
         walls = prism(footage.outline, solid.along, footage.open_edges)
-        found = SpaceScene.of(walls, [drawn_out(line, solid.along) for line in lines], poses, moves)
+        found = SpaceScene.of(walls, [drawn_out(line, solid.along) for line in lines], where, moves)
         return replace(found, hull=prism(footage.sea.hull, solid.along)) if preset.ship else found
     if isinstance(solid, Lying):
-        return SpaceScene.of(lying_tank(solid.corners), [], poses, moves)
+        return SpaceScene.of(lying_tank(solid.corners), [], where, moves)
     walls = turned_tank(footage.outline, footage.open_edges)
-    return SpaceScene.of(walls, [turned_plate(line) for line in lines], poses, moves)
+    return SpaceScene.of(walls, [turned_plate(line) for line in lines], where, moves)

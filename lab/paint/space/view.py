@@ -119,9 +119,8 @@ class SpaceView:
         layers = self._layers.get(part.shape) or Layers(*part.shape[:2])
         self._layers[part.shape] = layers
         if self._moves:
-            self._paint_edges(
-                part, layers, self.earth_camera(k, frame).shifted(*corner), space.walls, half, theme.ghost
-            )
+            still = self.earth_camera(k, frame).shifted(*corner)
+            self._paint_edges(part, layers, still, space.walls, half, theme.ghost)
         if space.hull is not None:
             self._paint_edges(part, layers, camera, space.hull, half, theme.far)
         place, radius, paints = self._cargo(bed, row)

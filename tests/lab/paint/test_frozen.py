@@ -56,6 +56,8 @@ def test_in_space_the_hold_of_the_frozen_ship_stands_as_she_does(tmp_path):
         stance = still.footage.space.series_stance[:, 0]
         assert stance[:, 5] == pytest.approx(roll) and len(stance) == len(time)
         assert np.abs(stance[:, :2]).max() < 0.02  # about an axis in the waterline
+        hull = still.footage.space.hull.points
+        assert hull[:, :2].min(axis=0) == pytest.approx(preset.ship.corners.min(axis=0) - preset.ship.hold)
 
 
 def beds_of(footage, folder):
