@@ -131,7 +131,8 @@ class Scene:
 
         Those in a room of a body are alone there, with what stands in the room.
         """
-        poured = replace(self, outline=outline, open_edges=(), motions=())
+        solid = self.solid and self.solid.over(outline)
+        poured = replace(self, outline=outline, open_edges=(), motions=(), solid=solid)
         if self.hold:
             inner = tuple(replace(part, tank=0) for part in self.parts if part.tank == self.hold)
             poured = replace(poured, matters=(self.grains,), parts=inner, more_tanks=())

@@ -165,7 +165,8 @@ def _filled(preset: Preset, kind: np.ndarray | None) -> tuple[np.ndarray, np.nda
     outline, fixed = filling_outline(preset), fixed_grains(preset)
     plates, thrown = _plates(preset), grains.surface == "disturbed"
     region = np.array(grains.place) if grains.place else None
-    given = [(outline, r, fixed, plates, thrown, region, preset.hold.solid) for r in random]
+    solid = preset.hold.solid and preset.hold.solid.over(outline)
+    given = [(outline, r, fixed, plates, thrown, region, solid) for r in random]
     try:
         if grains.layered:
             position = [layered(*layers, *how) for *layers, how in zip(kind, reach, given, strict=True)]

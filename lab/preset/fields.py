@@ -41,6 +41,7 @@ class Columns:
     optional: tuple[str, ...] = ()
     most: int = 1_000_000
     looked_at: int | None = None  # rows that are read to refuse a wrong file early; None: all, to use them
+    surface: bool = False  # whether the file is an STL file, with the corners of a triangle in a row
 
 
 @dataclass(frozen=True)

@@ -117,7 +117,12 @@ def _file(taken: Taken, raw: object, key: str) -> Table:
 
     path = _scalar(replace(taken, kind=str), raw, key)
     asked = taken.columns
-    columns = read_table(path, asked.needed, asked.optional, key, asked.most, asked.looked_at)
+    if asked.surface:
+        from lab.preset.sections.solids.mesh import read_mesh
+
+        columns = read_mesh(path, key)
+    else:
+        columns = read_table(path, asked.needed, asked.optional, key, asked.most, asked.looked_at)
     return Table(Path(path).name, {name: tuple(values.tolist()) for name, values in columns.items()})
 
 

@@ -7,6 +7,7 @@ import taichi as ti
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.lists.gathering import differences, gathered, geometry
 from solvers.grains.lists.neighbours import Neighbours
+from solvers.grains.lists.smooth import hand_on
 from solvers.grains.state import FAR, GrainState
 from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State
@@ -158,6 +159,8 @@ class Contacts:
         w, load = self.units.world(u), self.nothing()
         turns = ti.static(range(g.turns))
         shift = self.walls.shift(w, t)
+        if ti.static(self.walls.smooth):
+            hand_on(self.units, self.walls, g, contacts, u, shift)
         for p in range(contacts.length[u]):
             i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
             gap, radius = self.walls.gap(feature, shift, *g.at(w, i)), g.radius[w, i]

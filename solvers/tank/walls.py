@@ -31,6 +31,8 @@ class Walls:
     do. Functions of a feature take the poses of all pieces, as `Pieces.at` tells them.
     """
 
+    smooth = False  # whether features are parts of smooth surfaces, on which contacts go on from one to the next
+
     def __init__(self, arrays: State, tanks: Sequence[Tank], pieces: Pieces, apart: Sequence[int] = ()):
         parts, self.moved = pieces.parts, pieces
         self.tanks = len(tanks)

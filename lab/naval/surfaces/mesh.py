@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-GRAIN = 1e-6  # of the largest extent: corners this close are one
+from lab.base.surfaces import stl
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,18 +69,7 @@ class Mesh:
 
 def welded(triangles: np.ndarray, name: str) -> Mesh:
     """The mesh of triangles (n, 3, 3) m, in which corners at the same place are one; those without an area go."""
-    from scipy.sparse import coo_array  # slow to import
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
-    points, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    near = cKDTree(points).query_pairs(GRAIN * float(np.ptp(points, axis=0).max()), output_type="ndarray")
-    if len(near):
-        links = coo_array((np.ones(len(near)), near.T), shape=(len(points), len(points)))
-        _, group = connected_components(links, directed=False)
-        _, first, group = np.unique(group, return_index=True, return_inverse=True)
-        points, number = points[first], group[number.ravel()]
-    return with_faces(points, number.reshape(-1, 3), name)
+    return with_faces(*stl.welded(triangles), name)
 
 
 def with_faces(corners: np.ndarray, faces: np.ndarray, name: str) -> Mesh:

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.base.surfaces.stl import triangles_of
 from lab.naval.surfaces import whole
 from lab.naval.surfaces.axes import Axes, check_middle, check_size
 from lab.naval.surfaces.cuts import section_at
 from lab.naval.surfaces.mesh import Mesh, welded
-from lab.naval.surfaces.stl import triangles_of
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.form import Form
 from solvers.ship.section import Section

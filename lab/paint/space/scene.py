@@ -10,6 +10,7 @@ import numpy as np
 
 from lab.paint.space.stance import stances
 from lab.paint.space.walls import Walls, drawn_out, lying_tank, prism, turned_plate, turned_tank
+from solvers.tank.solids.mesh import Mesh
 from solvers.tank.solids.solid import Lying, Prism
 
 if TYPE_CHECKING:
@@ -76,6 +77,8 @@ def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
         walls = prism(footage.outline, solid.along, footage.open_edges)
         found = SpaceScene.of(walls, [drawn_out(line, solid.along) for line in lines], where, moves)
         return replace(found, hull=prism(footage.sea.hull, solid.along)) if preset.ship else found
+    if isinstance(solid, Mesh):
+        return SpaceScene.of(Walls.of(list(solid.points)), [], where, moves)
     if isinstance(solid, Lying):
         return SpaceScene.of(lying_tank(solid.corners), [], where, moves)
     walls = turned_tank(footage.outline, footage.open_edges)

@@ -91,7 +91,9 @@ def _marks(given: Mapping[str, Any]) -> list[object]:
     marks: list[object] = [Doc(given.get("doc", "")), Unit(given.get("symbol", "1")), Of(*given.get("of", ()))]
     marks += [Interval(**given["interval"])] if "interval" in given else []
     marks += [Usual(*given["usual"])] if "usual" in given else []
-    marks += [Columns(*map(_hashed, given["columns"]), LOOKED_AT)] if "columns" in given else []
+    if "columns" in given:
+        needed, optional, most, *surface = map(_hashed, given["columns"])
+        marks.append(Columns(needed, optional, most, LOOKED_AT, bool(surface)))
     return marks + [mark() for name, mark in {"cheap": Cheap, "alike": Alike}.items() if given.get(name)]
 
 

@@ -8,7 +8,7 @@ from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
 from lab.preset.kept.content import INSIDE, KINDS_OF_GAUGES, MATTERS, Content, Gauge
 from lab.preset.kept.read import keys
 from solvers.machine.quantity import PLANE, SPACE
-from solvers.tank.solids.solid import ENDS, edges_named
+from solvers.tank.solids.solid import ENDS, MESH, edges_named
 
 
 def content(table: object) -> Content:
@@ -23,9 +23,10 @@ def content(table: object) -> Content:
     repeats = kept.get("run", {}).get("repeats", 1)
     matters = tuple(name for name in MATTERS if has[name])
     tank = kept.get("tank", {})
-    axes = SPACE if tank.get("along") or tank.get("turned") else PLANE
-    faces = edges_named(0 if axes == PLANE else len(tank.get("outline") or range(4)))
+    axes = SPACE if any(tank.get(key) for key in ("along", "turned", "mesh")) else PLANE
+    faces = edges_named(0 if axes == PLANE or tank.get("mesh") else len(tank.get("outline") or range(4)))
     faces += ENDS if tank.get("along") and not (tank.get("turned") or tank.get("periodic")) else ()
+    faces += MESH if tank.get("mesh") else ()
     parts = kept.get("parts", {}).items()
     bodies = tuple(name for name, part in parts if part.get("density") or part.get("mass"))
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))

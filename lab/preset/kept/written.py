@@ -34,7 +34,8 @@ def _taken(taken: Taken) -> dict:
     limits = {name: bound for name, bound in vars(taken.interval).items() if bound is not None}
     found |= {"interval": limits} if limits else {}
     found |= {"usual": [*vars(taken.usual).values()]} if taken.usual else {}
-    found |= {"columns": [taken.columns.needed, taken.columns.optional, taken.columns.most]} if taken.columns else {}
+    if asked := taken.columns:
+        found["columns"] = [asked.needed, asked.optional, asked.most, *[True] * asked.surface]
     for field in fields(Taken):
         value = getattr(taken, field.name)
         if field.name not in ("kind", "interval", "usual", "columns") and value != field.default:

@@ -25,6 +25,8 @@ def check_space(preset) -> None:
     """Raise LabError, one sentence, for a key of the plane alone in a preset (`lab.preset.schema.Preset`) in space."""
     if preset.tank.periodic and not preset.tank.along:
         raise LabError("tank.periodic: goes with the length of a slice; give tank.along, or leave this out.")
+    if preset.tank.unit and not preset.tank.mesh:
+        raise LabError("tank.unit: goes with the file of a mesh; give tank.mesh, or leave this out.")
     for name, part in preset.parts.items():
         for column in _columns_in_space(part.history):
             raise LabError(f"parts.{name}.history.file: a part has no {column} of its own; leave out that column.")
@@ -41,8 +43,8 @@ def check_space(preset) -> None:
 def _faults(preset) -> Iterator[tuple[str, str]]:
     """The keys at fault, and why."""
     tank, grains = preset.tank, preset.grains
-    key_of_space = "tank.along" if tank.along else "tank.turned"
-    if tank.along and tank.turned and not tank.lies:
+    key_of_space = next(f"tank.{key}" for key in ("mesh", "along", "turned") if getattr(tank, key))
+    if tank.along and tank.turned and not (tank.lies or tank.mesh):
         remedy = 'leave this out, or tank.along, or set it to "x" for one that lies'
         yield "tank.turned", f"a tank is either turned about its axis or drawn out; {remedy}"
     for key, reason in PLANE_ALONE.items():
@@ -61,7 +63,9 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     if tank.periodic:
         for key in _in_space(preset.motion):
             yield key, "a slice of a tank without an end moves in the plane; leave this out, or tank.periodic"
-    if tank.lies:
+    if tank.mesh:
+        yield from _faults_of_mesh(preset)
+    elif tank.lies:
         yield from _faults_of_lying(preset)
     elif tank.turned:
         yield from _faults_of_turned(preset)
@@ -115,6 +119,17 @@ def _faults_of_lying(preset) -> Iterator[tuple[str, str]]:
         yield "tank.periodic", "a tank that is turned about x has end walls; leave this out"
     for name in preset.parts:
         yield f"parts.{name}", "no parts stand in a tank that is turned about x yet; leave this out, or take tank.along"
+
+
+def _faults_of_mesh(preset) -> Iterator[tuple[str, str]]:
+    """The keys at fault in a tank that is a mesh, and why."""
+    for key in ("width", "height", "outline", "along", "turned", "periodic"):
+        if getattr(preset.tank, key):
+            yield f"tank.{key}", "a mesh says all of a tank's shape; leave this out, or tank.mesh"
+    if not preset.tank.lid:
+        yield "tank.lid", "a mesh that is open at the top has no lid; leave this out"
+    for name in preset.parts:
+        yield f"parts.{name}", "no parts stand in a tank that is a mesh yet; leave this out, or take tank.along"
 
 
 def _is_even(lines: Sequence[Sequence[Point]], one: Sequence[Point] | None = None) -> bool:

@@ -7,12 +7,14 @@ from typing import Annotated, Literal
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.fields import Of
+from lab.preset.fields import Columns, Of, Table
 from lab.preset.outline import Point, rectangle, simple_polygon
+from lab.preset.sections.solids.mesh import COLUMNS, MOST, UNITS, mesh_of
 from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit, Usual
 from solvers.machine.quantity import PLANE
 from solvers.tank.outline import top_edges
+from solvers.tank.solids.mesh import Mesh
 from solvers.tank.solids.solid import Lying, Prism, Solid, Turned
 
 MOST_LINING = 20_000  # grains that line a tank
@@ -99,6 +101,17 @@ class Tank(Shell):
             "diameter and along its length, or the outline has corners y and x."
         ),
     ] = False
+    mesh: Annotated[
+        Table | None,
+        Columns(COLUMNS, (), MOST, surface=True),
+        Doc(
+            "STL file of the tank's inner surface, in place of width and height, with x along, y across and z up: "
+            "closed, or open at the top; the scene is then in space, too."
+        ),
+    ] = None
+    unit: Annotated[
+        Literal[*UNITS] | None, Doc("Unit of the numbers in the file of `mesh`, which does not say it.")
+    ] = None
     roughness: Annotated[
         Length | None,
         Of("grains"),
@@ -117,7 +130,16 @@ class Tank(Shell):
     @cached_property
     def corners(self) -> tuple[Point, ...]:
         """The outline (m) in the tank's own frame, a simple polygon, counter-clockwise. Raises LabError."""
-        return tuple(map(tuple, self.solid.round_outline.tolist())) if self.lies else self._polygon("width", "height")
+        if self.lies or self.mesh:
+            return tuple(map(tuple, self.solid.front.tolist()))
+        return self._polygon("width", "height")
+
+    @property
+    def open_edges(self) -> tuple[int, ...]:
+        """The edges without a wall; edge k runs from corner k to corner k + 1."""
+        if self.mesh:
+            return top_edges(np.array(self.corners)) if self.solid.open else ()
+        return super().open_edges
 
     @property
     def profile(self) -> tuple[Point, ...]:
@@ -128,13 +150,26 @@ class Tank(Shell):
     @cached_property
     def solid(self) -> Solid | None:
         """The solid that the outline stands for in space; None in the plane. Raises LabError."""
+        if self.mesh:
+            return self._mesh()
         if self.lies:
             return Lying(self.profile)
         return Turned() if self.turned else Prism(self.along, self.periodic) if self.along else None
 
+    def _mesh(self) -> Mesh:
+        """The mesh of its file. Raises LabError."""
+        if self.unit is None:
+            raise LabError(f"tank.unit: missing; a file of triangles has no unit, so give one of {', '.join(UNITS)}.")
+        try:
+            return mesh_of(self.mesh.name, self.mesh.columns, UNITS[self.unit])
+        except LabError as error:
+            raise LabError(f"tank.mesh: {error}") from None
+
     @property
     def in_space(self) -> tuple[str, ...]:
         """What of it is in space, in words; nothing of one in the plane."""
+        if self.mesh:
+            return (f"{self.mesh.name}, {len(self.solid.triangles)} triangles",)
         if self.lies:
             return (f"lying, {show(float(np.ptp(self.solid.corners[:, 1])), 'm')} long",)
         if self.turned:

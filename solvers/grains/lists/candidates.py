@@ -27,7 +27,8 @@ class Candidates:
     """For each grain i of a unit the grains j > i of the unit, and all others, that may come as near as is listed.
 
     They are all that had gaps up to `farthest` (m), to walls BESIDE times that, when they were `seen`, and are `known`,
-    by world. In the step in which they are renewed `renewed` is 1. Walls are left out where they move.
+    by world. In the step in which they are renewed `renewed` is 1. Walls are left out where they move. Of a mesh's
+    features only those `nearby` are looked at, which are sorted into cells (`solvers.tank.solids.nearby`).
     """
 
     def __init__(
@@ -41,9 +42,11 @@ class Candidates:
         across: int,
         boxes: Boxes | None,
         reach: float,
+        nearby=None,
     ):
         self.units, self.grains, self.walls, self.walled = units, grains, walls, not walls.moving
         self.boxes, self.boxed = boxes, boxes is not None
+        self.nearby, self.sorted = nearby, nearby is not None
         own, world = arrays.under("candidates"), Axis("world", grains.worlds)
         capacity, walled = (
             room * (each * units.size + more) for each, more in zip(ROOM[grains.axes], MORE, strict=True)
@@ -156,7 +159,14 @@ class Candidates:
             for i in range(start, end):
                 self.wall_first[u, i - start] = found
                 reach = g.reach[w, i] + self.farthest[1]
-                for feature in range(self.walls.features):
+                begin, last = 0, self.walls.features
+                if ti.static(self.sorted):
+                    cell = self.nearby.cell(*g.at(w, i))
+                    begin, last = self.nearby.first[cell], self.nearby.first[cell + 1]
+                for k in range(begin, last):
+                    feature = k
+                    if ti.static(self.sorted):
+                        feature = self.nearby.listed[k]
                     if self.walls.near(feature, shift, reach, *g.at(w, i)):
                         self.feature[u, ti.min(found, self.wall_capacity - 1)] = feature
                         found += 1

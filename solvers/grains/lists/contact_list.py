@@ -112,6 +112,21 @@ class ContactList:
         enter(self.memory[which], u, p // lanes, p % lanes, value)
 
     @ti.func
+    def remembers(self, u, p):
+        """Whether contact p remembers anything."""
+        found = False
+        for k in ti.static(range(self.memories)):
+            found = found or self.remembered(k, u, p) != 0.0
+        return found
+
+    @ti.func
+    def hand_on(self, u, p, q):
+        """Let what contact p remembers be contact q's."""
+        for k in ti.static(range(self.memories)):
+            self.remember(k, u, q, self.remembered(k, u, p))
+            self.remember(k, u, p, 0.0)
+
+    @ti.func
     def set_aside(self, u):
         """Copy the present list to the old one, in which `add` finds the contact history."""
         for k in range(self.units.size + 1):

@@ -11,7 +11,7 @@ import taichi as ti
 
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.lists.boxes import Boxes
-from solvers.grains.lists.candidates import Candidates
+from solvers.grains.lists.candidates import BESIDE, Candidates
 from solvers.grains.lists.contact_list import ContactList
 from solvers.grains.lists.skin import Skin
 from solvers.grains.lists.validity import NEVER, ListValidity
@@ -79,8 +79,12 @@ class Neighbours:
         bounds = walls.bounds_of_grains
         self.cells = Cells(arrays, grains, *bounds, 2.0 * reach + skin.farthest, grains.periodic)
         boxes = Boxes(arrays, grains, self.cells) if skin.together else None
+        self.sorted = units.single and walls.smooth  # whether features are looked for here by cells
+        self.nearby = walls.nearby(own, reach + max(BESIDE * skin.farthest, skin.most_beside)) if walls.smooth else None
         if not units.single:
-            self.candidates = Candidates(arrays, units, grains, walls, skin.farthest, room, across, boxes, reach)
+            self.candidates = Candidates(
+                arrays, units, grains, walls, skin.farthest, room, across, boxes, reach, self.nearby
+            )
         self.validity = ListValidity(arrays, units, grains, walls, skin, boxes)
 
     def forget(self) -> None:
@@ -185,10 +189,15 @@ class Neighbours:
             reach, begin, last = self.grains.reach[w, i] + self.skin.beside(w), 0, self.walls.features
             if ti.static(self.walled):
                 begin, last = self.candidates.wall_first[u, i - start], self.candidates.wall_first[u, i - start + 1]
+            elif ti.static(self.sorted):
+                cell = self.nearby.cell(*self.grains.at(w, i))
+                begin, last = self.nearby.first[cell], self.nearby.first[cell + 1]
             for k in range(begin, last):
                 feature = k
                 if ti.static(self.walled):
                     feature = self.candidates.feature[u, k]
+                elif ti.static(self.sorted):
+                    feature = self.nearby.listed[k]
                 # A contact may begin when a grain slides past a segment's end, so grains beyond it are listed too.
                 if self.walls.near(feature, shift, reach, *self.grains.at(w, i)):
                     found = self.list_contact(self.grains, u, found, i, feature, shift, dt)

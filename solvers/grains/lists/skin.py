@@ -75,10 +75,16 @@ class Skin:
         self.beside_walls = self.astray + (self.parts if moving else 0.0)
         beyond = widths.farthest - widths.most  # candidates serve several lists
         self.farthest = max(widths.farthest, bridges + beyond) + early
+        self.bridges, self.early = bridges, early
         own = arrays.under("lists")
         self.width = own.holding("skin", np.full(grains.worlds, widths.least), "world", kept=True)
         bounds = [widths.least, widths.most, widths.per_speed, bridges, early]
         self.bounds = own.holding("skins", np.array(bounds), "number")
+
+    @property
+    def most_beside(self) -> float:
+        """The largest gap (m) up to which grains are listed with walls."""
+        return max(self.beside_walls * self.widths.most, self.bridges) + self.early
 
     @ti.func
     def margin(self, w):

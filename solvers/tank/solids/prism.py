@@ -30,6 +30,8 @@ class PrismWalls:
     the tank reach from one end wall to the other.
     """
 
+    smooth = False
+
     def __init__(self, arrays: State, tanks: Sequence[Tank], pieces: Pieces, solid: Prism):
         self.section = Walls(arrays, tanks, pieces)
         self.tanks, self.parts = self.section.tanks, self.section.parts

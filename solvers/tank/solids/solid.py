@@ -17,7 +17,7 @@ FACETS = 96  # of the outline of a round tank as seen along its axis; a multiple
 FREE = 1e-9  # of a reach: by how much a point that is clear of a wall may be nearer
 
 
-ENDS = "end 1", "end 2"
+ENDS, MESH = ("end 1", "end 2"), ("mesh",)  # names of faces
 
 
 def edges_named(count: int) -> tuple[str, ...]:
@@ -25,7 +25,7 @@ def edges_named(count: int) -> tuple[str, ...]:
     return tuple(f"edge {k + 1}" for k in range(count))
 
 
-class InSpace:
+class Solid:
     """What solids have in common."""
 
     axes = SPACE
@@ -70,9 +70,13 @@ class InSpace:
         """Volume (m³) of a region (m, 2) m of the tank, at most."""
         return self.volume(region, float(np.ptp(region[:, 1])))
 
+    def over(self, outline: np.ndarray) -> "Solid":
+        """It with walls as high as an outline is; of most an outline says so by itself."""
+        return self
+
 
 @dataclass(frozen=True)
-class Prism(InSpace):
+class Prism(Solid):
     """The outline in the y–z plane, drawn out along x from −`along`/2 to `along`/2 (m), between two end walls.
 
     Edges of the outline without a wall are open over the whole length. The end walls are as high as the outline. A
@@ -117,7 +121,7 @@ class Prism(InSpace):
 
 
 @dataclass(frozen=True)
-class Turned(InSpace):
+class Turned(Solid):
     """A section through the axis z, which must be the same on both sides of y = 0, turned about that axis.
 
     So are the plates in it, and edges without a wall are round openings.
@@ -143,10 +147,10 @@ class Turned(InSpace):
 
 
 @dataclass(frozen=True)
-class Lying(InSpace):
+class Lying(Solid):
     """A closed body turned about the axis x, such as a drum, from its `profile`: corners across the axis and x, m.
 
-    The profile must be the same on both sides of the axis. The outline is what is seen of it along x (`round_outline`).
+    The profile must be the same on both sides of the axis. The outline is what is seen of it along x (`front`).
     """
 
     profile: tuple[tuple[float, float], ...]
@@ -158,7 +162,7 @@ class Lying(InSpace):
         return np.array(self.profile)
 
     @property
-    def round_outline(self) -> np.ndarray:
+    def front(self) -> np.ndarray:
         """What is seen of it along x: a circle (FACETS, 2) m, which its widest place fills."""
         turn = 2.0 * np.pi * np.arange(FACETS) / FACETS
         return float(self.corners[:, 0].max()) * np.column_stack([np.cos(turn), np.sin(turn)])
@@ -226,7 +230,3 @@ def _slices(section: np.ndarray, depth: float) -> tuple[np.ndarray, np.ndarray]:
     area = np.array([area_below(section, end) if end > 0.0 else 0.0 for end in ends])
     thick = np.diff(ends)
     return thick, np.diff(area) / thick
-
-
-Solid = Prism | Turned | Lying
-"""A tank in space."""

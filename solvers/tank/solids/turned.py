@@ -28,6 +28,8 @@ class TurnedWalls:
     A drum that rotates is a lying tank whose motion turns it about its axis.
     """
 
+    smooth = False
+
     def __init__(self, arrays: State, tanks: Sequence[Tank], pieces: Pieces, solid: Turned | Lying):
         self.lying = isinstance(solid, Lying)
         if self.lying:
@@ -61,7 +63,7 @@ class TurnedWalls:
 
     @ti.func
     def piece(self, feature):
-        """Number of the piece of a feature: the faces of the tank come first (`InSpace.faces`), then the parts."""
+        """Number of the piece of a feature: the faces of the tank come first (`Solid.faces`), then the parts."""
         return self.bearing[feature]
 
     @ti.func

@@ -81,7 +81,8 @@ def on_its_own(preset: Preset) -> Preset:
 def test_given_text_is_the_same_preset(name, tmp_path):
     changes = {"grains.spread": "5 %", "material.dissipative_time": "1e-6 s"}
     preset = load(name, {"run.seed": 5, **(changes if as_shipped(name).resolved.grains else {})})
-    for table in (files("presets") / name).parent.glob("*.csv"):  # paths in the text are as written
+    folder = (files("presets") / name).parent
+    for table in (*folder.glob("*.csv"), *folder.glob("*.stl")):  # paths in the text are as written
         copy(table, tmp_path)
     again = load(write(tmp_path, "again.toml", preset.given_text))
     assert again.name == "again"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.assembly.grains import _ordered, grain_count
+from lab.assembly.grains import _ordered, filling_outline, grain_count
 from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.preset.find import load
@@ -45,6 +45,7 @@ AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
         (DRUM, {"parts.vane.points": [["0 mm", "0 mm"], ["0 mm", "9 mm"]]}, "parts.vane: no parts stand in a tank"),
         (DRUM, {"grains.count": 12_000}, "grains.count: 12000 grains do not fit into the tank"),
         (DRUM, {"kinds": False}, "grains.layered: kinds of grains that are poured start in layers; add a table"),
+        (DRUM, {"grains.diameter": False}, "grains.diameter: missing; a length is needed"),
         (DRUM, {"grains.surface": "disturbed"}, "grains.layered: layers settle as they lie"),
         (DRUM, {**TABLE, "grains.diameter": False}, "kinds.small.diameter: grains.table says how large grains are"),
         (CHICKPEAS, {**BIG, "material.restitution": 0.5}, "kinds.big.diameter: grains of up to 300 mm do not fit"),
@@ -83,7 +84,7 @@ def test_a_recording_has_three_axes():
     assert content(to_table(load("tilting/quick").resolved)).axes == 2
 
 
-QUICK = ["space/tilting-box-quick", "space/slice-quick", "space/silo-quick", "space/drum-quick"]
+QUICK = ["space/tilting-box-quick", "space/slice-quick", "space/silo-quick", "space/drum-quick", "space/hold-quick"]
 
 
 @pytest.mark.parametrize("preset", QUICK)
@@ -99,9 +100,9 @@ def test_a_bed_starts_within_its_tank_without_overlaps(preset):
     pairs = cKDTree(place).query_pairs(2.0 * radius.max(), output_type="ndarray")
     apart = np.linalg.norm(place[pairs[:, 0]] - place[pairs[:, 1]], axis=1)
     assert not np.any(apart < radius[pairs % len(radius)].sum(axis=1) * (1.0 - 1e-9))
-    assert np.all(scene.solid.clear(position[0], scene.outline, radius))
+    assert np.all(scene.solid.over(filling_outline(loaded)).clear(position[0], filling_outline(loaded), radius))
     if loaded.grains.depth:
-        volume = loaded.tank.along * 0.3 * loaded.grains.depth
+        volume = loaded.tank.solid.volume(np.array(loaded.tank.corners), loaded.grains.depth)
         share = np.pi / 6.0 * loaded.sizes.mean_cube * len(radius) / volume
         assert share == pytest.approx(0.57, rel=1e-3)
 

@@ -89,8 +89,8 @@ def test_the_gaps_of_a_lying_drum_are_those_from_its_barrel_its_ends_and_its_con
     """By the closed forms of a cylinder, planes and a cone, from within, normals too."""
     drum = Lying(tuple(map(tuple, DRUM.tolist())))
     points = np.random.default_rng(5).uniform([-0.4, -0.4, -0.1], [0.4, 0.4, 0.6], (4000, 3))
-    points = points[drum.clear(points, drum.round_outline, 0.0)]
-    found = asked(drum, drum.round_outline, points)
+    points = points[drum.clear(points, drum.front, 0.0)]
+    found = asked(drum, drum.front, points)
     found[..., 0] = np.where(found[..., 0] < FACED, found[..., 0], np.inf)
     away, x = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     slant = np.array([-0.8, -0.6])  # the cone's normal inward, across the axis and along it
@@ -117,8 +117,8 @@ def test_the_volume_in_a_lying_drum_is_that_of_segments_of_its_circles(deep):
     whole = np.pi * (0.4**2 * 0.3 + 0.4 / 3.0 * (0.4**2 + 0.4 * 0.1 + 0.1**2))
     edges = [np.linspace(low, high, 81) for low, high in ((-0.4, 0.4), (-0.4, 0.4), (-0.1, 0.6))]
     grid = np.stack(np.meshgrid(*(0.5 * (one[1:] + one[:-1]) for one in edges), indexing="ij"), axis=-1).reshape(-1, 3)
-    inside = drum.clear(grid, drum.round_outline, 0.0) & (grid[:, 1] < deep - 0.4)
-    found = drum.volume(drum.round_outline, deep)
+    inside = drum.clear(grid, drum.front, 0.0) & (grid[:, 1] < deep - 0.4)
+    found = drum.volume(drum.front, deep)
     assert found == pytest.approx(0.8 * 0.8 * 0.7 * inside.mean(), rel=4e-3)
     if deep in (0.4, 0.8):
         assert found == pytest.approx(whole * deep / 0.8, rel=1e-6)

@@ -1,0 +1,1 @@
+"""Tanks that files hold."""
