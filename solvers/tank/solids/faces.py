@@ -187,8 +187,8 @@ class FaceWalls:
     @ti.func
     def follows(self, y, z, x):
         """Whether a point lies in the box in which grains that have left the tank are followed."""
-        b = self.box
-        return b[0] <= y <= b[3] and b[1] <= z <= b[4] and b[2] <= x <= b[5]
+        beside = self.box[0] <= y <= self.box[3] and self.box[2] <= x <= self.box[5]
+        return beside and self.box[1] <= z <= self.box[4]
 
 
 @ti.func

@@ -69,10 +69,10 @@ def test_a_damaged_surface_is_refused_in_a_sentence(name, tmp_path):
     ("changes", "said"),
     [
         ({"tank.unit": False}, "tank.unit: missing; a file of triangles has no unit, so give one of m, dm"),
-        ({"tank.unit": "ft"}, "grains.table: grains of up to 16 mm are too small for so large a tank"),
+        ({"tank.unit": "ft"}, "grains.table: grains of up to 24 mm are too small for so large a tank"),
         ({"tank.unit": "m", "tank.mesh": "FAR"}, "tank.mesh: far.stl: is 4 km large; look at tank.unit"),
         ({"grains.table": [["300 mm", 1]]}, "grains.table: grains of up to 300 mm do not fit into the tank"),
-        ({"grains.depth": False, "grains.count": 9000}, "grains.count: 9000 grains do not fit into the tank"),
+        ({"grains.depth": False, "grains.count": 4000}, "grains.count: 4000 grains do not fit into the tank"),
         ({"tank.width": "1 m"}, "tank.width: a mesh says all of a tank's shape; leave this out, or tank.mesh"),
         ({"tank.along": "1 m"}, "tank.along: a mesh says all of a tank's shape"),
         ({"tank.turned": "x"}, "tank.turned: a mesh says all of a tank's shape"),

@@ -22,9 +22,11 @@ class Still:
 
 @ti.kernel
 def gaps(walls: ti.template(), points: ti.types.ndarray(), found: ti.types.ndarray(), held: ti.types.ndarray()):
-    """The gap and normal of each feature (n, features, 4) of points (n, 3), and whether they are held (n,)."""
+    """The gap and normal of each feature (n, features, 4) of points (n, 3), and if they are held, or far off (n,)."""
     for n in range(points.shape[0]):
         held[n] = ti.cast(walls.holds(points[n, 0], points[n, 1], points[n, 2]), ti.i32)
+        if not walls.follows(points[n, 0], points[n, 1], points[n, 2]):
+            held[n] = -1
         for feature in range(walls.features):
             one = walls.gap(feature, ti.Vector([0.0]), points[n, 0], points[n, 1], points[n, 2])
             for k in ti.static(range(4)):
@@ -41,7 +43,10 @@ def listed(nearby: ti.template(), points: ti.types.ndarray(), found: ti.types.nd
 
 
 def asked(mesh, points, reach):
-    """Gaps and normals of all features for points (n, 3) m, whether they are held, and what their cells list."""
+    """Gaps and normals of all features for points (n, 3) m, whether they are held, and what their cells list.
+
+    Points that are far off (−1) are held by none.
+    """
     runtime.initialise(1)
     arrays = State()
     walls = FaceWalls(arrays, [Tank(mesh.front, 1.0)], Still(), mesh)
@@ -52,7 +57,9 @@ def asked(mesh, points, reach):
     some = np.zeros((len(points), walls.features), dtype=np.int32)
     listed(nearby, points, some)
     arrays.release()
-    return found, held.astype(bool), some.astype(bool)
+    low, high = walls.bounds
+    np.testing.assert_array_equal(held >= 0, np.all((points >= low) & (points <= high), axis=1))
+    return found, held > 0, some.astype(bool)
 
 
 def nearest(points, mesh):
