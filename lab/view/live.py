@@ -70,7 +70,7 @@ def steerable(loaded: LoadedPreset) -> LoadedPreset:
     """
     preset = loaded.resolved
     if preset.tank.solid is not None:
-        key = "tank.along" if preset.tank.along else "tank.turned"
+        key = next(f"tank.{key}" for key in ("mesh", "turned", "along") if getattr(preset.tank, key))
         raise LabError(f"{key}: a scene in space cannot be steered yet; `cargolab run` films it.")
     if preset.grains is not None and preset.grains.room is not None:
         raise LabError("grains.room: the tank of a hull with grains cannot be steered; `cargolab run` films it.")
