@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from solvers.tank.outline import NONE_FIXED, area_below
-from solvers.tank.solids.solid import FREE, MESH, Solid
+from solvers.tank.solids.solid import FREE, MESH, InSpace
 
 UP = 1  # the axis z in the order y, z, x
 ACROSS = [0, 2]  # the axes y and x
@@ -16,7 +16,7 @@ STEEP = 1e-9  # upward part of a unit normal below which a triangle has no area 
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Mesh(Solid):
+class Mesh(InSpace):
     """A surface of triangles with normals inward: `corners` (n, 3) m, and `triangles` (m, 3) by their numbers.
 
     The surface is closed, or open at the top: its edges of one triangle are then a single loop, the mouth, which is

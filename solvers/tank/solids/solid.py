@@ -25,7 +25,7 @@ def edges_named(count: int) -> tuple[str, ...]:
     return tuple(f"edge {k + 1}" for k in range(count))
 
 
-class Solid:
+class InSpace:
     """What solids have in common."""
 
     axes = SPACE
@@ -70,13 +70,13 @@ class Solid:
         """Volume (m³) of a region (m, 2) m of the tank, at most."""
         return self.volume(region, float(np.ptp(region[:, 1])))
 
-    def over(self, outline: np.ndarray) -> "Solid":
+    def over(self, outline: np.ndarray) -> "InSpace":
         """It with walls as high as an outline is; of most an outline says so by itself."""
         return self
 
 
 @dataclass(frozen=True)
-class Prism(Solid):
+class Prism(InSpace):
     """The outline in the y–z plane, drawn out along x from −`along`/2 to `along`/2 (m), between two end walls.
 
     Edges of the outline without a wall are open over the whole length. The end walls are as high as the outline. A
@@ -121,7 +121,7 @@ class Prism(Solid):
 
 
 @dataclass(frozen=True)
-class Turned(Solid):
+class Turned(InSpace):
     """A section through the axis z, which must be the same on both sides of y = 0, turned about that axis.
 
     So are the plates in it, and edges without a wall are round openings.
@@ -147,7 +147,7 @@ class Turned(Solid):
 
 
 @dataclass(frozen=True)
-class Lying(Solid):
+class Lying(InSpace):
     """A closed body turned about the axis x, such as a drum, from its `profile`: corners across the axis and x, m.
 
     The profile must be the same on both sides of the axis. The outline is what is seen of it along x (`front`).
@@ -230,3 +230,7 @@ def _slices(section: np.ndarray, depth: float) -> tuple[np.ndarray, np.ndarray]:
     area = np.array([area_below(section, end) if end > 0.0 else 0.0 for end in ends])
     thick = np.diff(ends)
     return thick, np.diff(area) / thick
+
+
+Solid = InSpace
+"""A tank in space."""

@@ -63,7 +63,7 @@ class TurnedWalls:
 
     @ti.func
     def piece(self, feature):
-        """Number of the piece of a feature: the faces of the tank come first (`Solid.faces`), then the parts."""
+        """Number of the piece of a feature: the faces of the tank come first (`InSpace.faces`), then the parts."""
         return self.bearing[feature]
 
     @ti.func
