@@ -693,7 +693,7 @@ def denied(path, *_, **__):
         ("parts.gate.sped=1 m/s", "parts.gate.sped: unknown key; did you mean 'speed'?"),
         ("parts.door.speed=1 m/s", "parts.door.points: missing"),
         ("parts.door=3", "parts.door: a table of keys is needed"),
-        ("motion.surge.amplitude=1 m", "motion.surge: unknown key"),
+        ("motion.swing.amplitude=1 m", "motion.swing: unknown key"),
         ("motion.roll.amplitude=1 deg", "motion.roll.frequency: missing"),
         ("motion.tilt=true", "motion.tilt: a table of keys is needed"),
         ("motion=3", "motion: a table of keys is needed"),
