@@ -20,6 +20,7 @@ STUDIES = {
     "equal-error": equal_error.study,
     "equal-large": equal_error.study_large,
     "equal-spheres": equal_error.study_spheres,
+    "equal-many-spheres": equal_error.study_many_spheres,
     "curves": curves.study,
     "slow-tilts": curves.study_slow,
 }
