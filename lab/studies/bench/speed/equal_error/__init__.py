@@ -95,8 +95,8 @@ def study_large(page: Page, work: Path, fast: bool) -> None:
 def study_spheres(page: Page, work: Path, fast: bool) -> None:
     """Add the section on spheres in space to the page: a bed of usual size, and ten copies of it."""
     page.section("Beside other codes at equal error, spheres in space")
-    page.say("""As above, with equal spheres in a square tank twelve diameters wide, and with ten copies of it side by side,
-        for fewer steps.""")
+    page.say("""As above, with equal spheres in a square tank twelve diameters wide, and with ten copies of it side by
+        side, for fewer steps.""")
     for copies in (1, 10):
         report(page, work, _of_spheres(fast), copies, fast)
 
