@@ -54,13 +54,15 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
     return Recorder(folder, **writing)
 
 
-def sample(time: float, worlds: int = 1, axes: int = PLANE, **values: object) -> dict:
-    """A row of the series; quantities that are not given are zero."""
-    return {**_zeros(series_of(False, GRAINS), worlds, axes=axes), "time": time, **values}
+def sample(time: float, worlds: int = 1, axes: int = PLANE, faces: int = 0, **values: object) -> dict:
+    """A row of the series, in space of a tank with so many faces; quantities that are not given are zero."""
+    quantities = series_of(False, GRAINS, in_space=faces > 0)
+    return {**_zeros(quantities, worlds, axes=axes, faces=faces), "time": time, **values}
 
 
-def _zeros(quantities: tuple, worlds: int, count: int = 0, parts: int = 0, axes: int = PLANE) -> dict:
-    rows = rows_of([quantity.within(axes) for quantity in quantities], {"world": worlds, "grain": count, "part": parts})
+def _zeros(quantities: tuple, worlds: int, count: int = 0, parts: int = 0, axes: int = PLANE, faces: int = 0) -> dict:
+    sizes = {"world": worlds, "grain": count, "part": parts, "face": faces}
+    rows = rows_of([quantity.within(axes) for quantity in quantities], sizes)
     return {name: np.zeros(shape) for name, (shape, _) in rows.items()}
 
 

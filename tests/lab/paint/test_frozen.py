@@ -48,7 +48,7 @@ def test_in_space_the_hold_of_the_frozen_ship_stands_as_she_does(tmp_path):
     with recorder(tmp_path, resolved=to_table(preset), outline=np.array(preset.tank.corners)) as writer:
         for now in (0.0, 0.5, 1.0):
             pose, lost = np.array([[*rest, -0.3 * now]]), [-1.0 if now < 1.0 else 1.0]
-            writer.sample(sample(now, axes=3, pose=pose, **of_a_ship(flooded=lost)))
+            writer.sample(sample(now, axes=3, faces=len(preset.faces), pose=pose, **of_a_ship(flooded=lost)))
             writer.frame(frame(now, axes=3, pose=pose, position=place, velocity=place))
     with open_footage(tmp_path) as footage:
         loose, still, (time, roll, _) = beds_of(footage, tmp_path)

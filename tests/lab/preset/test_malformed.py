@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import tomllib
 import warnings
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import presets
 from lab.assembly.grains import grain_count
 from lab.assembly.scene import build
 from lab.assembly.water import most_drops
@@ -181,6 +183,8 @@ def folder(tmp_path_factory) -> Path:
     made = tmp_path_factory.mktemp("presets")
     for name, text in TABLES.items():
         (made / name).write_text(text)
+    for surface in Path(presets.__file__).parent.rglob("*.stl"):
+        shutil.copy(surface, made)
     return made
 
 

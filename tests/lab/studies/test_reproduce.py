@@ -278,9 +278,10 @@ def test_the_page_begins_with_what_differs_most_and_its_explanation_follows_it(t
 
 
 def kept_results(report_name: str) -> dict:
-    """What the gallery keeps of a report; nothing if it has none yet."""
-    kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
-    return json.loads(kept.read_text()) if kept.exists() else {}
+    """What the gallery keeps of a report, of its quick runs if there are no others; nothing if it has none yet."""
+    folder = ROOT / "renders" / "gallery" / report_name
+    kept = [path for path in (folder / f"{report_name}{part}.json" for part in ("", "-quick")) if path.exists()]
+    return json.loads(kept[0].read_text()) if kept else {}
 
 
 def test_what_differs_has_its_explanation_or_an_open_question_beside_it():

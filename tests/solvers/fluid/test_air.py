@@ -39,6 +39,7 @@ def pool() -> Iterator[Simulation]:
     made.close()
 
 
+@pytest.mark.slow
 def test_water_rests_under_air(pool):
     """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
     again(pool, scene(background=40.0)).observe()

@@ -19,6 +19,7 @@ def dropped():
     run.close()
 
 
+@pytest.mark.slow
 def test_what_water_loses_bodies_and_tank_gain(dropped):
     """Momentum is kept to 1e-12 of Σ|F|Δt, by the loads of each step; and the load is the one that was solved for."""
     run, start = dropped

@@ -123,6 +123,7 @@ def test_the_water_that_enters_is_that_of_the_flow(filled):
     assert rows[-1]["inflow_volume"][1, 0] < rows[-1]["inflow_volume"][0, 0] - 20 * cell
 
 
+@pytest.mark.slow
 def test_its_energy_is_accounted_for(filled):
     """What it brings, less what models take and it still has: 1 % of what is exchanged. Its weight is on the walls."""
     _, rows = filled
@@ -135,6 +136,7 @@ def test_its_energy_is_accounted_for(filled):
     assert pushed == pytest.approx(weight, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_bit_for_bit(filled):
     """As one that was not interrupted, while particles enter, in two worlds more and less of them."""
     run, _ = filled

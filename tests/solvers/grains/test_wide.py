@@ -98,6 +98,7 @@ def agree(one, other):
 
 
 # Where the processor has none no run has such kernels; the slow tests compile them all the same.
+@pytest.mark.slow
 @pytest.mark.skipif(not wide.registers(), reason="kernels are on real vectors where there is AVX2 or AVX-512 only")
 def test_real_vectors_move_grains_as_scalars_do():
     agree(thrown(0, tangential="mindlin"), thrown(wide.registers() // 32, tangential="mindlin"))
