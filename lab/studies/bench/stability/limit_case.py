@@ -21,16 +21,15 @@ from lab.studies.bench.stability.packings import SPEED
 from lab.studies.case import Found, Line, Picture, Table
 from solvers.machine.quantity import PLANE
 
-SAYS = f"""In the plane six grains round a seventh in a hexagonal tank that squeezes them, so that every contact is as
-deep as the impact at {SPEED:g} m/s that the derived step is meant for; in space a block of a cubic crystal of 63
-grains, those inside with twelve such contacts, those at edges with some a quarter deeper; μ is so large that nothing
-slides. Unstable: the kinetic energy, spin included, of a disturbance of {DISTURBED:g} of that speed grows
-{GROWTH:g}-fold within {STEPS:g} steps, or the watch stops the run. The longest stable step is bracketed to {
-    100
-    * (FINE - 1):.0f} %, by bisection; the tables say how many derived steps it is. 0: none that was tried, down to 1/{
-    WIDEST:g} of
-the derived step, is stable. Below 1 the derived step itself is not. Friction laws are on top of hertz-viscoelastic.
-Without losses and friction the limit is 2/ω, ω the highest frequency of the packing (eigenvalues)."""
+SAYS = f"""Six grains round a seventh in a hexagonal tank that squeezes them, so that every contact is as deep as the
+impact at {SPEED:g} m/s that the derived step is meant for; μ is so large that nothing slides. Unstable: the kinetic
+energy, spin included, of a disturbance of {DISTURBED:g} of that speed grows {GROWTH:g}-fold within {STEPS:g} steps, or
+the watch stops the run. The longest stable step is bracketed to {100 * (FINE - 1):.0f} %, by bisection; the tables say
+how many derived steps it is. 0: none that was tried, down to 1/{WIDEST:g} of the derived step, is stable. Below 1 the
+derived step itself is not. Friction laws are on top of hertz-viscoelastic. Without losses and friction the limit is
+2/ω, ω the highest frequency of the packing (eigenvalues)."""
+IN_SPACE = """In space the packing is a block of a cubic crystal of 63 grains in a box: those inside have twelve such
+contacts, those at edges some a quarter deeper."""
 DRAFT = LEVELS["draft"].longer_steps
 TICKS = (0.5, 1, 2, 5, 10, 20, 50)  # derived steps
 LOOKS = dict(zip(DAMPINGS, ((BLUE, "o"), (GREEN, "s"), (VERMILION, "D")), strict=True))  # colours and marks
@@ -48,7 +47,7 @@ def check(fast: bool, integrator: str, axes: int = PLANE) -> Found:
     where, name = ("", "limits") if axes == PLANE else (" in space", "limits-space")
     caption = f"Longest stable steps of {integrator}{where} in derived steps, by law and damping"
     picture = Picture(f"{name}-{integrator}", limit_figure(limits), caption)
-    return Found(lines, [picture], [note], [Table(("law", *DAMPINGS), rows)])
+    return Found(lines, [picture], [note] if axes == PLANE else [IN_SPACE, note], [Table(("law", *DAMPINGS), rows)])
 
 
 def _lines(one: Limit) -> list[Line]:
