@@ -11,9 +11,12 @@ from solvers.grains.making import make_grains
 from solvers.grains.timestep import limits_of_grains
 from solvers.liquid.matter import make_liquid
 from solvers.machine.limit import Limit
+from solvers.mixture.exchange import make_exchange
 from solvers.tank.context import Context
 from solvers.tank.given import Given
 from solvers.tank.matter import Matter
+
+__all__ = ["MATTERS", "context_of", "limits_of", "made", "make_exchange"]
 
 # In the order in which their phases act: the bounds on a step of a scene in which particles meet at a speed (m/s), and
 # what makes a matter of a scene, or None where another one does.

@@ -13,6 +13,7 @@ from solvers.machine.limit import Limit
 from solvers.machine.marks import EachWorld, NotOfBed, in_one_launch, shared
 from solvers.machine.quantity import PLANE
 from solvers.matters import limits_of
+from solvers.mixture.given import Mixture
 from solvers.motion.axle import Axle
 from solvers.motion.carrier import limits_of_carrier, shares_of_loads
 from solvers.motion.contact_pairs import limits_of_contacts
@@ -36,6 +37,7 @@ class Scene:
       `length` (m) along a ship, by default all; `more_tanks` stand beside it, or are rooms of a part that floats free
       (`Tank`). Grains are in the first tank, or in such rooms if there are any.
     - `solid`: what the outline stands for in space; None: the scene is plane.
+    - `mixture`: that grains and water are in one tank; None: they do not meet.
     - `matters`: what the tanks hold, at most one of each kind of `solvers.matters`.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
@@ -61,6 +63,7 @@ class Scene:
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
     solid: Solid | None = None
+    mixture: Mixture | None = None
     precision: str = "f64"
     schedule: str = "auto"
 
@@ -107,8 +110,8 @@ class Scene:
 
     @property
     def is_long(self) -> bool:
-        """Whether the kernel of a step is long: of grains in a floating hull, or of particles that enter a ship."""
-        return bool(self.hold or (self.flows and self.fluid.inlets))
+        """Whether the kernel of a step is long: of grains in a floating hull or in water, or of inflow into a ship."""
+        return bool(self.hold or self.mixture or (self.flows and self.fluid.inlets))
 
     @property
     def flows(self) -> bool:
@@ -146,7 +149,10 @@ class Scene:
         """
         if self.hold:
             return [number for number, tank in enumerate(self.tanks) if tank.aboard is None]
-        return [number for number, fill in enumerate(self.fills) if fill] if self.grains else []
+        beside = [
+            number for number, fill in enumerate(self.fills) if fill and not (self.mixture and number == self.hold)
+        ]
+        return beside if self.grains else []
 
     @property
     def faces(self) -> int:

@@ -12,7 +12,7 @@ from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
-from solvers.matters import context_of, made
+from solvers.matters import context_of, made, make_exchange
 from solvers.motion.carrier import make_carrier
 from solvers.motion.moved import make_pieces
 from solvers.motion.sampler import Sampler
@@ -87,7 +87,7 @@ class Simulation:
             carrier.bear(loads)
         cut = max((one.in_bands for one in scene.matters), default=0)
         self.clock = Clock(arrays, context.units(cut), self.carrier.numbers)
-        sequence = Sequence(matters, self.carrier, self.parts)
+        sequence = Sequence(matters, self.carrier, self.parts, make_exchange(scene, context, matters))
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
         told = scene.axes, scene.faces

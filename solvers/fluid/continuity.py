@@ -131,7 +131,7 @@ class Continuity:
             pressure += (1.0 - gas) * (c.get("stiffness") * more)
         else:
             pressure += c.get("stiffness") * (c.state.share(s + more) - c.state.share(s))
-        power = pressure * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
+        power = pressure * p.load(p.mass, b) / p.borne(b, (1.0 + s) * (1.0 + s) * c.of("density", gas))
         by_walls = (1.0 + s) * closed
         powers = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(2))])
         powers[0], powers[1] = ti.cast((evened * power).sum(), p.exact), ti.cast((by_walls * power).sum(), p.exact)

@@ -63,7 +63,7 @@ class Forces:
             if ti.static(c.two):
                 self.update_both(b, s)
             else:
-                p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
+                p.store(p.volume, b, p.load(p.mass, b) / p.borne(b, density * (1.0 + s)))
                 pressure = stiffness * c.state.share(s)
                 if ti.static(c.pressed):
                     pressure += p.filled(b) * c.get("background")
@@ -225,7 +225,7 @@ class Forces:
                         load = self.walls.on_walls(b, origin, own, [force * off[a] for a in ti.static(range(p.axes))])
                         self.bodies.bear(u, piece - 1, load)
         factor, density = c.get("slope"), c.of("density", gas)
-        lightness = (p.filled(b) * factor) / (density * (1.0 + s))
+        lightness = (p.filled(b) * factor) / p.borne(b, density * (1.0 + s))
         past = [p.zeros() for _ in ti.static(range(p.axes))]  # the walls before and behind
         hold = [p.zeros() for _ in ti.static(range(p.axes))]  # their drag
         if ti.static(c.end_walls):

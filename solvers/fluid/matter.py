@@ -18,11 +18,12 @@ from solvers.fluid.inflow.inflow import Inflow
 from solvers.fluid.lists.grid import grid_round
 from solvers.fluid.lists.neighbours import FluidContext, Lists
 from solvers.fluid.lists.order import Order, Tanks
+from solvers.fluid.lists.work_ranges import WorkRanges
 from solvers.fluid.mover import Mover
 from solvers.fluid.phases.sound_switch import SoundSwitch
 from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.shifting import SHIFTING
-from solvers.fluid.state import LANES, Particles, WorkRanges
+from solvers.fluid.state import LANES, Particles
 from solvers.fluid.walls.added_mass import wall_added_mass
 from solvers.fluid.walls.divergence_correction import DivergenceCorrection
 from solvers.fluid.walls.edges import Edges
@@ -45,6 +46,7 @@ class WaterMatter(Matter):
     """Water: the pressures of its walls, its forces, then kick and drift, the rates of density, and drift."""
 
     name = "water"
+    laying = None  # what lays the particles between grains
     of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force", "part_force")  # known only after a step
 
     def __init__(self, scene, context: Context):
@@ -62,20 +64,22 @@ class WaterMatter(Matter):
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
         sizes = context.axes, worlds, count, lanes, walls, grid.strips
-        self.particles = p = Particles(arrays, *sizes, shifting, water.air, context.among, water.gap > 0.0)
+        kinds = shifting, water.air, context.among, water.gap > 0.0, scene.mixture is not None
+        self.particles = p = Particles(arrays, *sizes, *kinds)
         self.units = units = context.units(p.fluid_blocks)
         # Free bodies answer as a step of the water begins: for them its load need not stand
         self.load = context.load(arrays.under("water"), units, 1 if self.bodies.floats else fluid.substeps)
         self.load.lag(wall_added_mass(scene, layers), water.added_mass == "layer")
         self.wall_points = slots, blocks, layers.volumes, layers.firm
-        ranges, self.constants = WorkRanges(p, units), Constants(arrays, water, scene.gravity)
+        self.ranges = ranges = WorkRanges(p, units)
+        self.constants = Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, context.carrier, worlds, fluid.substeps > 1)
         of_parts = np.array(self.bodies.tanks, dtype=int)[self.bodies.solids.owner]
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, slots, layers.tanks, of_parts))
         self.bodies.join(arrays, p, self.order, ranges, self.poses, units)
         self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, context.room)
         self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.substeps)
-        shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
+        self.context = shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
         tangential = TangentialCorrection(arrays, shared, layers, slots, scene.tanks)
         self.extrapolation = Extrapolation(arrays, shared, tangential, self.load, tank.thickness)
         self.forces = Forces(arrays, shared, self.extrapolation, self.load, tank.thickness)
@@ -209,11 +213,16 @@ class WaterMatter(Matter):
         columns = zip(y, z, mass, volume, there, strict=True)
         return [frozen(*(one[inside] for one in of_world)) for *of_world, inside in columns]
 
+    def lay_by(self, laying) -> None:
+        """Have the particles laid between grains, by a `laying` (`solvers.mixture.start.Laying`)."""
+        self.laying = laying
+
     def place(self, position: np.ndarray | None) -> None:
         """Place the particles as the scene says, and the wall particles; all that was noted is forgotten."""
         p = self.particles
         self.sound_switch.use(False, self.scene.gravity)
-        p.put(self.fluid.particles, self.water, self.fluid.present)
+        start = self.laying.particles(position) if self.laying else self.fluid.particles
+        p.put(start, self.water, self.fluid.present)
         p.put_walls(*self.wall_points, self.bodies.solids)
         lists, sums = self.lists, (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind)
         for field in (*sums, lists.last, lists.skin):
@@ -290,6 +299,6 @@ def make_water(scene, context: Context) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where they do not move one by one. Raises Unavailable."""
     if not scene.fluid.moved:
         return None
-    refuse_scene(scene.fills, scene.hold if scene.grains else None)
+    refuse_scene(scene.fills, scene.hold if scene.grains and not scene.mixture else None)
     refuse_reduced(scene)
     return WaterMatter(scene, context)

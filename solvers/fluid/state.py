@@ -7,7 +7,6 @@ from solvers.fluid.given import Air, Water
 from solvers.fluid.walls.end_walls import MODES
 from solvers.machine.memory import KINDS
 from solvers.machine.state import Axis, State, roomy
-from solvers.machine.units import Units
 from solvers.space.axes import named
 
 LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
@@ -43,6 +42,8 @@ class Particles:
     r_ji ⊗ ∇W, 1 within water; `carried` (N/m) the momentum that shifts bring (`shifting`). Of two phases, `gas` is 1
     for particles of air, 0 for those of water, `eigenvalue` is of the own phase, and wall particles have the pressure
     that water sees in `pressure`, that which air sees in `pressure_of_air`, and the water's `share` of what they see.
+    Between grains `volume` is that of grains and water together, of which `porosity` is the water's share, 0 as long as
+    it is not known.
 
     With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle. The usual room
     is shared `among` so many worlds, 0: those that there are.
@@ -61,6 +62,7 @@ class Particles:
         air: Air | None = None,
         among: int = 0,
         end_walls: bool = False,
+        porous: bool = False,
     ):
         self.axes, self.worlds, self.count, self.lanes = axes, worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
@@ -104,6 +106,10 @@ class Particles:
         if end_walls:
             self.end_wall_modes = [own.wide(each, *named(f"end_wall_{n}", self.axes)) for n in range(MODES)]
             self.noted += [field for mode in self.end_wall_modes for field in mode]
+        self.porous = porous
+        if porous:
+            (self.porosity,) = own.wide(each, "porosity")
+            self.noted.append(self.porosity)
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)
         (self.used,) = own.integers((self.each_world,), "used", below=self.fluid_blocks + 1)
@@ -144,6 +150,9 @@ class Particles:
             field.from_numpy(whole.reshape(-1, self.lanes))
         for field in (*self.acceleration, *(field for mode in self.end_wall_modes for field in mode)):
             field.fill(0.0)
+        if self.porous:
+            unused = self.number.to_numpy() == UNUSED
+            self.porosity.from_numpy(unused.astype(KINDS[self.porosity.dtype]))
         self.used.fill(-(-len(number) // self.lanes))
 
     def put_walls(self, slots: np.ndarray, blocks: np.ndarray, volume: np.ndarray, firm: np.ndarray, solids) -> None:
@@ -221,6 +230,22 @@ class Particles:
         return ti.select(mass > 0.0, self.ones(), self.zeros())
 
     @ti.func
+    def borne(self, b, density):
+        """The mass of water in a volume of the mixture (kg/m³), from the water's own `density`."""
+        if ti.static(self.porous):
+            return density * self.load(self.porosity, b)
+        else:
+            return density
+
+    @ti.func
+    def filling_mass(self, b, lane):
+        """The mass (kg/m) that a particle would have if water filled all of its volume."""
+        if ti.static(self.porous):
+            return self.mass[b, lane] / self.porosity[b, lane]
+        else:
+            return self.mass[b, lane]
+
+    @ti.func
     def gases(self, b):
         """1 in lanes with air, 0 in those with water."""
         if ti.static(self.two):
@@ -245,53 +270,3 @@ class Particles:
     def ones(self):
         """A vector of lanes of ones."""
         return ti.Vector([ti.cast(1.0, self.real) for _ in ti.static(range(self.lanes))])
-
-
-@ti.data_oriented
-class WorkRanges:
-    """Which blocks of a world each unit works on: of the used ones of water, and of the walls' ones, equal shares."""
-
-    def __init__(self, particles: Particles, units):
-        self.particles, self.units = particles, units
-
-    @ti.func
-    def _cut(self, u, blocks):
-        """First and end of a unit's share of a number of blocks."""
-        first, end = 0, blocks
-        if ti.static(not self.units.whole):
-            size = (blocks + self.units.a_world - 1) // self.units.a_world
-            first = ti.min(blocks, (u % self.units.a_world) * size)
-            end = ti.min(blocks, first + size)
-        return first, end
-
-    @ti.func
-    def fluid(self, u):
-        """First and end of a unit's blocks of water."""
-        w = self.units.world(u)
-        first, end = self._cut(u, self.particles.used[w])
-        return w * self.particles.stride + first, w * self.particles.stride + end
-
-    @ti.func
-    def walls(self, u):
-        """First and end of a unit's blocks of walls."""
-        w = self.units.world(u)
-        first, end = self._cut(u, self.particles.sizes[WALLS])
-        start = w * self.particles.stride + self.particles.fluid_blocks
-        return start + first, start + end
-
-
-@ti.data_oriented
-class Listing:
-    """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0.
-
-    What is saved of a world is counted from its first slot, so that it may go on under another number.
-    """
-
-    def __init__(
-        self, arrays: State, units: Units, name: str, blocks: int, capacity: int, below: int, slots_a_world: int
-    ):
-        self.capacity = capacity
-        own = arrays.under(f"water.{name}")
-        (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first", below=capacity + 1)
-        base = slots_a_world * (np.arange(units.axis.length) // units.a_world)
-        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots", below=below, base=base)

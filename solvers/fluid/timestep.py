@@ -21,6 +21,7 @@ TRAVELLED = 0.02  # of the shortest period of the tank's motion
 # of a floor layer of grains of its own mass has ω = π/t_c, and its step is stable up to 2/ω = 0.64 t_c.
 SHARE_OF_COLLISION = 0.5
 SLOW = 1e-9
+MOST_SUBSTEPS = 64  # of grains in a step of the water between them
 
 
 def limits_of_water(scene, closing: float = 0.0) -> list[Limit]:
@@ -74,10 +75,13 @@ def longest_pace(scene, step: float) -> int:
     """How many base steps of `step` (s) a step of the water may be long: beside grains in a ship, by its own bounds.
 
     Not where a ship takes its water's added mass on her own side, or takes long steps herself. Beside grains in a room
-    of a free body, which then has the water's steps, it is half of their shortest collision at most.
+    of a free body, which then has the water's steps, it is half of their shortest collision at most. Grains in water
+    take MOST_SUBSTEPS at most in one of its steps.
     """
-    if not (scene.fluid and scene.grains and (scene.vessels or scene.hold)):
+    if not (scene.fluid and scene.grains and (scene.vessels or scene.hold or scene.mixture)):
         return 1
+    if scene.mixture:
+        return max(1, min(MOST_SUBSTEPS, int(min(limit.step for limit in limits_of_water(scene)) / step)))
     if scene.hold:
         longest = min(*(limit.step for limit in limits_of_water(scene)), SHARE_OF_COLLISION * shortest_collision(scene))
         return max(1, int(longest / step))

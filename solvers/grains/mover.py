@@ -21,6 +21,7 @@ class Mover:
         self.units, self.grains, self.integrator = units, grains, integrator
         self.rotating, self.spatial = carrier.rotating, carrier.spatial
         self.hold, self.is_aboard = hold, hold is not None
+        self.water, self.is_wet = None, False  # what water between the grains does to them, once it is known
         names = (f"extra.{k}" for k in range(integrator.extra * (grains.axes + grains.turns)))
         self.extra = arrays.under("mover").reals(grains.each, *names)
 
@@ -28,6 +29,10 @@ class Mover:
         """Forget higher derivatives, for grains that were put somewhere or launched."""
         for field in self.extra:
             field.fill(0.0)
+
+    def soak(self, exchange) -> None:
+        """Let water act on the grains, by an `exchange` (`solvers.mixture.exchange.Exchange`)."""
+        self.water, self.is_wet = exchange, True
 
     @ti.func
     def move(self, g: ti.template(), u, body, kick, dt):
@@ -58,6 +63,8 @@ class Mover:
                 for a in ti.static(range(g.axes)):
                     acceleration[a] = ti.cast(gain[a], g.real)
                 turn[0] = torque[0] * g.inverse_inertia[w, i] + ti.cast(gain[2], g.real)
+            if ti.static(self.is_wet):
+                self.water.act(w, i, acceleration, b, kick)
             square = self.integrator.step(g, self.extra, w, i, acceleration, turn, kick, dt)
             if ti.static(g.shaped):
                 # No point of an outline is faster: (v + ω R)² is at most twice v² + ω² R².

@@ -23,19 +23,25 @@ class Sequence:
     step, which changes only when all lists are rebuilt, to the least that any matter or the carrier allows
     (`allowed_multiple`), and never overshoots the target. Since a quiet world seldom rebuilds its lists, it is checked
     every CHECK_EVERY base steps whether it may take longer ones. What a matter must offer is in `solvers.tank.matter`.
+
+    An `exchange` between two matters acts before their forces, after them, and between the motions of the two.
     """
 
-    def __init__(self, matters: Several, carrier, pieces):
+    def __init__(self, matters: Several, carrier, pieces, exchange=None):
         self.matters, self.carrier = tuple(matters), carrier
         pushing = (phase for matter in matters for phase in matter.before)
         self.before: tuple[Phase, ...] = (
             *pieces.opening,
+            *(exchange.opening if exchange else ()),
             *pushing,
+            *(exchange.phases if exchange else ()),
             *carrier.phases,
             *(p for m in matters for p in m.between),
             *pieces.phases,
         )
-        self.after: tuple[Phase, ...] = tuple(phase for matter in matters for phase in matter.after)
+        closing = exchange.closing if exchange else ()
+        moving = [phase for matter in matters[:1] for phase in matter.after]  # an exchange ends as the second one moves
+        self.after: tuple[Phase, ...] = (*moving, *closing, *(p for matter in matters[1:] for p in matter.after))
         alike = all(phase.every == 1 for phase in (*self.before, *self.after))
         # Whether any step may be longer
         self.has_multiples = alike and all(one.has_multiples for one in (carrier, pieces, *matters))

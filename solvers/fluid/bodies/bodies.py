@@ -8,7 +8,8 @@ from solvers.fluid.bodies.solids import Solids
 from solvers.fluid.bodies.visibility import Visibility
 from solvers.fluid.given import Water
 from solvers.fluid.lists.order import Order
-from solvers.fluid.state import UNUSED, Particles, WorkRanges
+from solvers.fluid.lists.work_ranges import WorkRanges
+from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.poses import AT_START, Poses
 from solvers.space.axes import dot

@@ -8,8 +8,10 @@ import taichi as ti
 
 from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.constants import Constants
+from solvers.fluid.lists.listing import Listing
 from solvers.fluid.lists.order import BINS, ROWS, Order
-from solvers.fluid.state import UNUSED, Listing, Particles, WorkRanges
+from solvers.fluid.lists.work_ranges import WorkRanges
+from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.state import State, padded
 from solvers.machine.units import Units
 from solvers.motion.poses import Poses

@@ -228,6 +228,8 @@ class Order:
         """What unused lanes have in a field."""
         if field.dtype == ti.i32:
             return UNUSED
+        if self.particles.porous and field is self.particles.porosity:
+            return 1.0
         return FAR if any(field is one for one in self.particles.place) else 0.0
 
     @ti.kernel

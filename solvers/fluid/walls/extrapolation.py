@@ -94,7 +94,7 @@ class Extrapolation:
                     for a in ti.static(range(p.axes)):
                         before[a] += (weight * volume) * apart[a]
                         fixed[a] = fixed[a] - (visible * (volume * always)) * apart[a]
-            massive = weight * p.mass[jb, lane]
+            massive = weight * p.filling_mass(jb, lane)
             if ti.static(self.sticks):
                 for a in ti.static(range(p.axes)):
                     moved[a] += weight * (volume * p.velocity[a][jb, lane])

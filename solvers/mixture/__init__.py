@@ -1,0 +1,1 @@
+"""Water between grains: porosity, drag, and the exchange of momentum."""

@@ -1,0 +1,227 @@
+"""Exchange of momentum between grains and the water between them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.lists.order import BINS
+from solvers.fluid.matter import WaterMatter
+from solvers.grains.matter import GrainMatter
+from solvers.machine.phase import Phase
+from solvers.machine.state import Axis, State
+from solvers.mixture.drag import DRAG
+from solvers.mixture.given import Mixture
+from solvers.mixture.porosity import Porosity
+from solvers.mixture.start import Laying
+from solvers.space.axes import dot, named
+from solvers.tank.context import Context
+from solvers.tank.matter import Matter
+
+NEAR, FAR = 1.0, 1.5  # spacings in the bed from a particle of water: a grain is wet, and dry
+FEW = 0.05  # of x, below which the means over a step are told by their series
+LEAST_WATER = 1e-6  # of the kernel's sum over water: a grain that sees less feels none
+
+
+@ti.data_oriented
+class Exchange:
+    """A grain feels −V_g ∇p + V_g ∇·τ + F_d, and the water the opposite (Anderson & Jackson 1967).
+
+    −∇p + ∇·τ is the force per volume on the water that its own pairs and walls make, and u_f its velocity, both
+    interpolated to the grain with the weights w_gi = V_i W/Σ V W. The reaction goes back with the same weights, so that
+    momentum is kept to rounding: in uniform pressure gradient the water keeps the share ε of the force.
+
+    The water acts in steps of its own, the grains in many shorter ones. Through these the drag is the mean over the
+    step of the exact solution of du_g/dt = a_g + κ (u_f − u_g)/m_g, du_f/dt = a_f − κ (u_f − u_g)/m_s with the water's
+    share m_s = ρ V_g ε/(1 − ε) (own derivation): neither step is limited by drag, however fine the grains. The
+    coefficient κ stands through a step of the water. Impulses are summed for each grain and go to the water at its end.
+
+    A grain is wet where the nearest particle of water is within a spacing of the bed, Δx/√ε, dry from 1.5 on.
+
+    Limits: no added mass, no lift, no lubrication; no friction of the slab's end planes.
+
+    Units: κ kg/s, u m/s, a m/s², m kg, V_g m³, p Pa.
+    """
+
+    def __init__(self, arrays: State, context: Context, scene, grains: GrainMatter, water: WaterMatter):
+        self.grains, self.water, self.carrier = grains.grains, water, context.carrier
+        self.particles, self.constants, self.order = water.particles, water.constants, water.order
+        self.lists, self.ranges, self.poses, self.substeps = water.lists, water.ranges, water.poses, water.substeps
+        self.water_units, self.units = water.units, context.units(self.grains.count)
+        mixture: Mixture = scene.mixture
+        self.law, thickness = DRAG[mixture.drag](), scene.tanks[scene.hold].thickness
+        self.porosity = Porosity(arrays, water.context, self.grains, context.walls.bounds, thickness)
+        g, own = self.grains, arrays.under("mixture")
+        each = Axis("world", g.worlds), Axis("place", g.count)
+        self.flow, self.lift, self.rise, self.impulse, self.push = (
+            own.reals(each, *named(name, g.axes), kept=False) for name in ("flow", "lift", "rise", "impulse", "push")
+        )
+        self.rate, self.partner, self.share = own.reals(each, "rate", "partner", "share", kept=False)
+        density = scene.fluid.water.density
+        numbers = thickness, density, density * mixture.kinematic, 1.0 / mixture.finer
+        self.numbers = own.holding("numbers", np.array(numbers), "number")
+        first, last = water.substeps.first, water.substeps.last
+        self.opening = first([Phase(self.porosity.sort), Phase(self.porosity.find, water.units)])
+        self.phases = first([Phase(self.gather, self.units)])
+        self.closing = last([Phase(self.close), Phase(self.spread, water.units)])
+
+    @ti.func
+    def gather(self, u, t, kick, dt):
+        """What the water does to each grain of a unit through the coming step of the water."""
+        w = self.units.world(u)
+        for i in range(self.units.first(u), self.units.end(u)):
+            self.gather_at(w, i)
+
+    @ti.func
+    def gather_at(self, w, i):
+        """As `gather`, for a grain."""
+        p, c, g, order = self.particles, self.constants, self.grains, self.order
+        zero = ti.cast(0.0, p.real)
+        far = ti.cast(c.get("reach") + 0.5 * self.lists.fixed_skin, p.where)
+        seen, porosity, near = zero, zero, ti.cast(1e30, p.real)
+        flow, push = [zero for _ in ti.static(range(p.axes))], [zero for _ in ti.static(range(p.axes))]
+        start = w * p.stride * p.lanes
+        for n in range(self.porosity.images):
+            image = self.porosity.image(n)
+            here = [g.place[a][w, i] - self.porosity.shift(image, a) for a in ti.static(range(p.axes))]
+            left, right = order.bin_of(here[0] - far), order.bin_of(here[0] + far)
+            for strip in range(order.strip_of(here[1] - far), order.strip_of(here[1] + far) + 1):
+                begin, end = (
+                    order.first[w, strip * order.sizes[BINS] + left],
+                    order.first[w, strip * order.sizes[BINS] + right + 1],
+                )
+                for k in range(start + begin, start + end):
+                    b, lane = k // p.lanes, k % p.lanes
+                    apart = [ti.cast(here[a] - p.place[a][b, lane], p.real) for a in ti.static(range(p.axes))]
+                    square = dot(apart, apart)
+                    weight = c.kernel.value(ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0))
+                    heavy, weight = weight * p.mass[b, lane], weight * p.volume[b, lane]
+                    seen += weight
+                    porosity += weight * p.porosity[b, lane]
+                    near = ti.min(near, square)
+                    for a in ti.static(range(p.axes)):
+                        flow[a] += weight * p.velocity[a][b, lane]
+                        push[a] += heavy * p.acceleration[a][b, lane]
+        wet = zero
+        if c.get("value") * seen > LEAST_WATER:
+            porosity /= seen
+            away = ti.sqrt(near * porosity) / c.get("spacing")
+            wet = ti.max(0.0, ti.min(1.0, (FAR - away) / (FAR - NEAR)))
+        self.share[w, i], self.rate[w, i] = zero, zero
+        for a in ti.static(range(p.axes)):
+            self.impulse[a][w, i], self.lift[a][w, i], self.rise[a][w, i] = zero, zero, zero
+        if wet > 0.0:
+            self.share[w, i] = 1.0 / (self.numbers[0] * seen)
+            self.wet(w, i, wet, porosity, [flow[a] / seen for a in ti.static(range(p.axes))], push, seen)
+
+    @ti.func
+    def wet(self, w, i, wet, porosity, flow: ti.template(), push: ti.template(), seen):
+        """Note what acts on a grain that is in water: the share `wet`, and what it sees of the water."""
+        g, p, radius = self.grains, self.particles, self.grains.radius[w, i]
+        volume, density = self.porosity.sphere[0] * self.numbers[0] * radius * radius * radius, self.numbers[1]
+        walls = self.walls_at(w, i)
+        for a in ti.static(range(p.axes)):
+            self.flow[a][w, i] = flow[a] - walls[a]
+            self.lift[a][w, i] = (wet * volume / seen) * push[a]
+            self.rise[a][w, i] = push[a] / (seen * density)
+        slip = [self.flow[a][w, i] - g.now[a][w, i] for a in ti.static(range(p.axes))]
+        size = 2.0 * radius * self.numbers[3]
+        law = self.law.coefficient(ti.sqrt(dot(slip, slip)), porosity, size, density, self.numbers[2])
+        self.rate[w, i] = wet * volume * law
+        self.partner[w, i] = (1.0 - porosity) / (density * porosity * volume)
+
+    @ti.func
+    def walls_at(self, w, i):
+        """The velocity (m/s) of the tank at a grain, in the tank's axes."""
+        g, real = self.grains, self.particles.real
+        walls = [ti.cast(0.0, real) for _ in ti.static(range(g.axes))]
+        if ti.static(self.poses.moving):
+            rate = ti.cast(self.poses.walls[5][w], real)
+            walls[0] = ti.cast(self.poses.walls[3][w], real) - rate * ti.cast(g.place[1][w, i], real)
+            walls[1] = ti.cast(self.poses.walls[4][w], real) + rate * ti.cast(g.place[0][w, i], real)
+        return walls
+
+    @ti.func
+    def act(self, w, i, acceleration: ti.template(), felt: ti.template(), kick):
+        """Add what the water does to a grain to its `acceleration` (m/s²); `felt` (m/s²) is what all feel in the tank.
+
+        The velocity of the water at the grain changes with the grain's own through the base steps of one of the water.
+        """
+        g, rate, partner = self.grains, self.rate[w, i], self.partner[w, i]
+        light = g.inverse_mass[w, i]
+        first, second = self.means(rate * (light + partner) * kick)
+        for a in ti.static(range(g.axes)):
+            lift, flow = self.lift[a][w, i], self.flow[a][w, i]
+            pushed, risen = acceleration[a] + light * lift, self.rise[a][w, i] + felt[a]
+            slip = (flow - g.velocity[a][w, i]) * first + (risen - pushed) * (kick * second)
+            drag = rate * slip
+            acceleration[a] = pushed + light * drag
+            self.flow[a][w, i] = flow + kick * (risen - partner * drag)
+            self.impulse[a][w, i] = self.impulse[a][w, i] + kick * (lift + drag)
+
+    @ti.func
+    def means(self, x):
+        """(1 − e^−x)/x and (x − 1 + e^−x)/x²: means over a step of what decays, and of what grows against decay."""
+        safe = ti.max(x, FEW)
+        lost = 1.0 - ti.exp(-safe)
+        first, second = lost / safe, (safe - lost) / (safe * safe)
+        if x < FEW:
+            first = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0))
+            second = 0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x / 120.0))
+        return first, second
+
+    @ti.func
+    def close(self, w, frame, kick, dt):
+        """Have all grains of a world give back what the water gave them; returns that all is well."""
+        g = self.grains
+        for i in range(g.mobile, g.count):
+            still = [ti.cast(0.0, g.real) for _ in ti.static(range(g.axes))]
+            felt = [ti.cast(self.poses.felt[2 + a][w], g.real) for a in ti.static(range(g.axes))]
+            self.act(w, i, still, felt, self.substeps.kick(w, kick))
+        for k in range(g.count):
+            i = self.porosity.cells.sorted[w, k]
+            for a in ti.static(range(g.axes)):
+                self.push[a][w, k] = -self.share[w, i] * self.impulse[a][w, i]
+        return True
+
+    @ti.func
+    def spread(self, u, frame, kick, dt):
+        """Add the reaction of the grains to the accelerations of a unit's particles; returns that all is well."""
+        p, c, lists, of = self.particles, self.constants, self.lists, self.porosity
+        w = self.water_units.world(u)
+        first, end = self.ranges.fluid(u)
+        during = self.substeps.kick(w, kick)
+        for b in range(first, end):
+            origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
+            own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
+            push = [p.zeros() for _ in ti.static(range(p.axes))]
+            for n in range(of.images):
+                image = of.image(n)
+                lower, upper = lists.box(b)
+                lists.seen_in(image, lower, upper)
+                for row in range(of.row_of(lower[1], -1), of.row_of(upper[1], 1) + 1):
+                    for k in range(of.begin(w, row, lower[0]), of.end(w, row, upper[0])):
+                        apart = [
+                            own[a] - ti.cast(of.place[a][w, k] + of.shift(image, a) - origin[a], p.real)
+                            for a in ti.static(range(p.axes))
+                        ]
+                        t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * c.get("shrink"), 0.0)
+                        weight = c.kernel.value(t)
+                        for a in ti.static(range(p.axes)):
+                            push[a] += self.push[a][w, k] * weight
+            mass = p.load(p.mass, b)
+            per_mass = p.load(p.volume, b) / (during * ti.max(mass, 1e-30))
+            for a in ti.static(range(p.axes)):
+                p.store(p.acceleration[a], b, p.load(p.acceleration[a], b) + per_mass * push[a])
+        return True
+
+
+def make_exchange(scene, context: Context, matters: Sequence[Matter]) -> Exchange | None:
+    """What grains and water of a scene (`solvers.scene.Scene`) exchange; None where they do not meet."""
+    if scene.mixture is None:
+        return None
+    grains, water = matters
+    exchange = Exchange(context.arrays, context, scene, grains, water)
+    grains.mover.soak(exchange)
+    water.lay_by(Laying(scene))
+    return exchange
