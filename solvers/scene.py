@@ -139,7 +139,7 @@ class Scene:
         if self.hold:
             inner = tuple(replace(part, tank=0) for part in self.parts if part.tank == self.hold)
             poured = replace(poured, matters=(self.grains,), parts=inner, more_tanks=())
-        return poured
+        return replace(poured, matters=(self.grains,), mixture=None) if self.mixture else poured
 
     @property
     def apart(self) -> list[int]:

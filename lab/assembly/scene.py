@@ -11,6 +11,7 @@ from lab.assembly.grains import check_laden, check_softness, grain_count, grains
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
 from lab.assembly.water import fluid_of, most_drops, particles, water_aboard
+from lab.assembly.wet import mixture_of, soaked
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.parts import parts_of
@@ -59,9 +60,12 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         length=preset.tank.length,
         solid=preset.tank.solid,
         more_tanks=(*further_tanks(preset, preset.thickness), *rooms_of_bodies(preset)),
+        mixture=mixture_of(preset),
         precision=preset.run.precision,
         schedule=preset.run.schedule,
     )
+    if scene.mixture:
+        scene.matters = scene.holding(soaked(scene)).matters
     check_laden(preset, scene)
     if preset.grains:
         check_softness(scene)

@@ -49,6 +49,7 @@ from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import DampingZone, Gauge, Water
 from lab.preset.sections.water.solids import check_solids
 from lab.preset.sections.water.tanks import Pool, check_tanks, pools
+from lab.preset.sections.wet.checks import check_wet
 from solvers.fluid import given as fluid
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
@@ -239,6 +240,7 @@ def check(preset: Preset) -> None:
     check_tanks(preset)
     check_weight(preset)
     check_water(preset)
+    check_wet(preset)
     check_air(preset)
     others = preset.ship is not None, bool(preset.motion.parts), bool(preset.matters)
     check_axle(preset.axle, *others, duration_of(preset.run, preset.motion), max(preset.tank.extent))

@@ -94,7 +94,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     if how.disc_step:
         simulation.close()
         simulation = start(scene, _settled_as_discs(scene, position, how, start, progress))
-    elif how.surface == "undisturbed" or how.outline != _corners(scene) or scene.hold:  # without water in the last case
+    elif how.surface == "undisturbed" or how.outline != _corners(scene) or scene.hold or scene.mixture:
         simulation.close()
         simulation = start(*_poured(scene, position, how, start, progress))
     try:
@@ -143,9 +143,9 @@ def _poured(
 ) -> tuple[Scene, np.ndarray]:
     """The scene, and where its grains lie (W, n, 2) m once they are poured into a closed tank that stands still.
 
-    Its walls reach as high as the grains. Those of a hull that floats are poured without water. An undisturbed bed is
-    poured without friction, which packs it as densely as shaking would, and is then levelled. In the returned scene
-    irregular grains have the angles at which they lie.
+    Its walls reach as high as the grains. Those of a hull that floats, or in water, are poured without it. An
+    undisturbed bed is poured without friction, which packs it as densely as shaking would, and is then levelled. In the
+    returned scene irregular grains have the angles at which they lie.
     """
     pouring, grains = scene.poured(np.array(how.outline)), scene.grains
     hold = scene.tanks[scene.hold]

@@ -251,7 +251,7 @@ class WaterMatter(Matter):
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
         # A particle that goes round falls for ever; what tension and cohesion hold, and vents take, is not known.
         # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 that nothing has given.
-        unknown = time == 0.0 or self.water.periodic or not self.constants.accounted or self.vent.acts
+        unknown = time == 0.0 or self.water.periodic or not self.constants.accounted or self.vent.acts or self.laying
         lifts = self.water.shifting == "delta-plus" and not (self.water.full or self.water.air)
         check_water(rows, np.nan if unknown else self.start, time, self.least, lifts)
 

@@ -44,6 +44,10 @@ class Grains:
         Length | None,
         Doc("Diameter of the real grains that each grain of a coarse model stands for; it changes only texts."),
     ] = None
+    true_size: Annotated[
+        Length | None,
+        Doc("Diameter of the grains that each one stands for in water: the bed has the permeability of these."),
+    ] = None
     spread: Annotated[float, Interval(ge=0, le=0.5), Doc("Relative spread of the diameters.")] = 0.0
     distribution: Annotated[Literal["uniform", "normal", "table"], Doc("How the diameters are distributed.")] = (
         "uniform"

@@ -36,7 +36,7 @@ def check_water(preset: Whole) -> None:
     if water is None:
         return
     _check_company(preset)
-    _check_models(water)
+    _check_models(water, preset.grains is not None)
     _check_between(preset)
     _check_given(preset)
     if water.depth is not None:
@@ -69,11 +69,6 @@ def _check_damping(preset: Whole) -> None:
 
 def _check_company(preset: Whole) -> None:
     """Raise LabError for what is in the tank beside water, or carries it, and the solver cannot compute."""
-    if preset.grains is not None and preset.grains.room is None and any(given_of(preset.water).values()):
-        raise LabError(
-            "water: grains and water in one tank are not computed yet; leave out one of them, or give the water a "
-            "tank of its own, [tanks.NAME], or the grains a room of a hull, grains.room."
-        )
     if preset.water.model != "sph" and preset.ship is None:
         named = preset.water.model
         raise LabError(f'water.model: "{named}" is for tanks in a ship; add a table [ship], or take "sph".')
@@ -123,12 +118,13 @@ def _check_given(preset: Whole) -> None:
         raise LabError(f"water.centre: {what}.")
 
 
-def _check_models(water: Water) -> None:
+def _check_models(water: Water, in_water: bool) -> None:
     """Raise LabError for models whose numbers are missing, or numbers whose models are."""
     viscosity = water.viscosity or SCHEMES[water.scheme].viscosity
     if viscosity in LAMINAR and water.kinematic_viscosity is None:
         raise LabError(f'water.kinematic_viscosity: missing for viscosity = "{viscosity}"; {needed("m^2/s")}.')
-    if viscosity not in LAMINAR and water.kinematic_viscosity is not None and not water.between_walls:
+    borne = water.between_walls or in_water
+    if viscosity not in LAMINAR and water.kinematic_viscosity is not None and not borne:
         raise LabError('water.kinematic_viscosity: goes with viscosity = "laminar"; leave out either.')
     if viscosity in LAMINAR and water.alpha is not None:
         raise LabError(f'water.alpha: goes with an artificial viscosity, not with viscosity = "{viscosity}".')

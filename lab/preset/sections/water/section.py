@@ -16,6 +16,7 @@ from solvers.fluid.start.rest import STARTS
 from solvers.fluid.states import STATES
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
+from solvers.mixture.drag import DRAG
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 SIDES = 160  # of the polygon in place of a circle: 3e-4 less area
@@ -102,7 +103,12 @@ class Water:
     ] = None
     kinematic_viscosity: Annotated[
         Annotated[float, Unit("m^2/s"), Interval(gt=0)] | None,
-        Doc('Viscosity of the liquid, for viscosity = "laminar", beside air "laminar-stress", or between_walls.'),
+        Doc(
+            'Viscosity of the liquid, for viscosity = "laminar", beside air "laminar-stress", between_walls, or grains.'
+        ),
+    ] = None
+    drag: Annotated[
+        Literal[*DRAG] | None, Doc('Law of the drag between grains and water in one tank; "di-felice" without it.')
     ] = None
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     between_walls: Annotated[

@@ -1,0 +1,83 @@
+"""Consistency checks of grains in water; each error is one sentence that names the key."""
+
+from typing import Protocol
+
+from lab.base.errors import LabError
+from lab.preset.sections.contact import Contact
+from lab.preset.sections.grains import Grains
+from lab.preset.sections.ship import Ship
+from lab.preset.sections.water import liquid
+from lab.preset.units import show
+
+COARSEST = 2.0  # grains' diameters: the least spacing of water, whose kernel then smooths over four of them
+
+
+class Whole(liquid.Wet, Protocol):
+    """Those sections, and the ones that say something of wet cargo."""
+
+    grains: Grains | None
+    ship: Ship | None
+    axes: int
+    shapes: dict
+    mean_diameter: float
+    diameters: tuple[float, float]
+    inflow: dict
+    contact: Contact
+
+
+def is_wet(preset: Whole) -> bool:
+    """Whether grains and water are in one tank."""
+    water, grains = preset.water, preset.grains
+    if water is None or grains is None or grains.room is not None:
+        return False
+    return any(getattr(water, name) is not None for name in ("depth", "region", "radius"))
+
+
+def check_wet(preset: Whole) -> None:
+    """Raise LabError for wet cargo that cannot be, and for keys of it where there is none."""
+    water, grains = preset.water, preset.grains
+    if not is_wet(preset):
+        if grains is not None and grains.true_size is not None:
+            raise LabError("grains.true_size: goes with water in the grains' tank; add [water], or leave it out.")
+        if water is not None and water.drag is not None:
+            raise LabError("water.drag: goes with grains in the water; add [grains], or leave it out.")
+        return
+    _check_company(preset)
+    for name in ("region", "radius", "flow", "periodic"):
+        if getattr(water, name) is not None:
+            raise LabError(f"water.{name}: water between grains starts level and at rest; give water.depth.")
+    largest = preset.diameters[1]
+    if water.spacing != "auto" and liquid.spacing(preset) < COARSEST * preset.mean_diameter:
+        least = show(COARSEST * preset.mean_diameter, "m")
+        raise LabError(
+            f"water.spacing: {show(water.spacing, 'm')} is under two grains' diameters; the water is a mean over many "
+            f"grains: take at least {least}."
+        )
+    if preset.thickness < largest * (1.0 - 1e-9):
+        raise LabError(
+            f"tank.thickness: {show(preset.thickness, 'm')} is less than the largest grain's diameter; in water the "
+            f"slab is as thick as that: take {show(largest, 'm')}."
+        )
+    if grains.true_size is not None and grains.true_size > preset.mean_diameter * (1.0 + 1e-9):
+        raise LabError(
+            f"grains.true_size: {show(grains.true_size, 'm')} is more than the grains' own diameter, "
+            f"{show(preset.mean_diameter, 'm')}; a computed grain stands for smaller ones: take less, or leave it out."
+        )
+
+
+def _check_company(preset: Whole) -> None:
+    """Raise LabError for what cannot be together with grains in water."""
+    beside = {
+        "tank.along": (preset.axes > 2, "in space"),
+        "shapes": (bool(preset.shapes), "of irregular grains"),
+        "air": (preset.air is not None, "with air"),
+        "water.between_walls": (preset.water.between_walls, "with friction on the walls before and behind"),
+        "water.full": (preset.water.full, "in a full tank"),
+        "water.model": (preset.water.model != "sph", "in frozen, linear or level water"),
+        "inflow": (bool(preset.inflow), "with inflow"),
+        "water.shifting": (preset.water.shifting != "none", "with shifted particles"),
+        "contact.cohesion": (preset.contact.cohesion != "none", "with bridges"),
+    }
+    for key, (there, what) in beside.items():
+        if there:
+            raise LabError(f"{key}: grains in water are not computed {what} yet; leave this out, or the water.")
