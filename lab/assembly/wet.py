@@ -6,7 +6,6 @@ import numpy as np
 
 from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds
-from lab.preset.sections.wet.checks import is_wet
 from solvers.fluid.given import Fluid
 from solvers.mixture.given import Mixture
 from solvers.scene import Scene
@@ -17,7 +16,7 @@ PACKED = 0.84  # share of the plane that settled discs fill
 
 def mixture_of(preset: Preset) -> Mixture | None:
     """How the grains of a preset and the water of their tank act on each other; None where they do not meet."""
-    if not is_wet(preset):
+    if not preset.wet:
         return None
     finer = preset.mean_diameter / preset.grains.true_size if preset.grains.true_size else 1.0
     drag = preset.water.drag or Mixture.drag

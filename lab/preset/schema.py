@@ -49,7 +49,7 @@ from lab.preset.sections.water.liquid import liquid
 from lab.preset.sections.water.section import DampingZone, Gauge, Water
 from lab.preset.sections.water.solids import check_solids
 from lab.preset.sections.water.tanks import Pool, check_tanks, pools
-from lab.preset.sections.wet.checks import check_wet
+from lab.preset.sections.wet.checks import check_wet, is_wet
 from solvers.fluid import given as fluid
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
@@ -125,6 +125,11 @@ class Preset(WithBodies):
     def axes(self) -> int:
         """Number of axes of the scene: two in the plane, three in space."""
         return self.tank.axes
+
+    @property
+    def wet(self) -> bool:
+        """Whether grains and water are in one tank."""
+        return is_wet(self)
 
     @property
     def faces(self) -> tuple[str, ...]:

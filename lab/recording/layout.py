@@ -18,6 +18,7 @@ from solvers.fluid.inflow import quantities as inflow
 from solvers.fluid.phases import quantities as air
 from solvers.grains import quantities as grains
 from solvers.machine.quantity import OWNERS, PLANE, Quantity
+from solvers.mixture import quantities as mixture
 from solvers.ship import quantities as ship
 from solvers.tank import quantities as tank
 
@@ -87,10 +88,13 @@ def series_of(
     return (TIME, *tank.SERIES, *of_matters, *(quantity for all_of, there in further if there for quantity in all_of))
 
 
-def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
-    """The quantities in the picture frames of a run; `steered_sea`: with the waves, because the user steers them."""
+def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS, wet: bool = False) -> tuple[Quantity, ...]:
+    """The quantities in the picture frames of a run.
+
+    `steered_sea`: with the waves, because the user steers them; `wet`: with those of water between grains.
+    """
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].FRAMES)
-    return (TIME, *tank.FRAMES, *((WAVES,) if steered_sea else ()), *of_matters)
+    return (TIME, *tank.FRAMES, *((WAVES,) if steered_sea else ()), *of_matters, *(mixture.FRAMES if wet else ()))
 
 
 def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:
@@ -99,7 +103,7 @@ def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quan
     more = bool(preset.axle), bool(preset.bodies), bool(preset.inflow), preset.axes > PLANE
     whole = series_of(afloat, matters, *more)
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
-    tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
+    tables = {"series": series, "frames": frames_of(afloat and steered, matters, preset.wet)}
     if preset.axes > PLANE:
         tables = {name: tuple(one.within(preset.axes) for one in those) for name, those in tables.items()}
     return tables | ({"steering": STEERING} if steered else {})

@@ -2,6 +2,7 @@
 
 from lab.recording.layout import OF_MATTERS, WAVES, frames_of, series_of
 from solvers.machine.quantity import Quantity
+from solvers.mixture import quantities as mixture
 
 COUNTED = {  # what each axis counts, and the preset key that sets its size
     "world": "beds (run.repeats)",
@@ -44,6 +45,8 @@ def recorded_by(name: object) -> str:
         return "; a preset with a part that floats (parts.NAME.density) records it."
     if name in _names(series_of(afloat=False, leaking=True)):
         return "; a preset with an opening to a room (inflow.NAME) records it."
+    if name in _names(mixture.FRAMES):
+        return "; a preset with grains and water in one tank records it."
     if name in _names(frames_of()):
         return "; it is in the frames (record.picture_rate)."
     return "; nothing records that."

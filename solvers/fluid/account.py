@@ -35,3 +35,22 @@ def quantities_of(matter, time: float) -> dict[str, np.ndarray]:
         **matter.bodies.read_and_reset(time, thick, by_parts),
     }
     return rows
+
+
+def snapshot_of(matter, time: float) -> dict[str, np.ndarray]:
+    """What is known of each particle of a `solvers.fluid.matter.WaterMatter` at `time` (s), which must be now.
+
+    Places, velocities relative to the tank (W, n, 2) and pressures (W, n), between grains the porosity (W, n).
+    """
+    p = matter.particles
+    found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation)
+    told = {
+        "position": np.stack(found[0:2], axis=-1),
+        "velocity": matter.diagnostics.relative(time, found[0:2], found[2:4], found[4:6], matter.gas),
+        "pressure": matter.diagnostics.whole(matter.constants.pressures(found[6], matter.gas), found[0:2]),
+    }
+    rows = {f"{phase}_{name}": told[name][:, part] for phase, part in matter.phases.items() for name in told}
+    if p.porous:
+        [porosity] = p.read(p.porosity)
+        rows["water_porosity"] = np.where(porosity > 0.0, porosity, 1.0)  # not known before the first step
+    return rows

@@ -5,7 +5,7 @@ from typing import ClassVar
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.account import quantities_of
+from solvers.fluid.account import quantities_of, snapshot_of
 from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scene, refuse_state, residual, suspects
 from solvers.fluid.constants import Constants
@@ -261,15 +261,7 @@ class WaterMatter(Matter):
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Places, velocities relative to the tank (W, n, 2) and pressures (W, n) at `time` (s), which must be now."""
-        p = self.particles
-        found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation)
-        told = {
-            "position": np.stack(found[0:2], axis=-1),
-            "velocity": self.diagnostics.relative(time, found[0:2], found[2:4], found[4:6], self.gas),
-            "pressure": self.diagnostics.whole(self.constants.pressures(found[6], self.gas), found[0:2]),
-        }
-        rows = {f"{phase}_{name}": told[name][:, part] for phase, part in self.phases.items() for name in told}
-        return rows
+        return snapshot_of(self, time)
 
     def alter(self, scene) -> None:
         """Go on with another gravity; the account of energy begins anew."""

@@ -65,6 +65,8 @@ class WaterLayer:
             return
         place = place[there]
         volume = np.broadcast_to(bed.footage.water.volume[bed.world], there.shape)[there]
+        if bed.footage.water.porous:
+            volume = volume / bed.drops("water_porosity", frame)[there]
         if self._discs:
             size = np.full(len(place), DISC * bed.footage.water.spacing)
             _paint_discs(picture, camera, place, size, self.colouring.colours(bed, frame)[there])

@@ -12,13 +12,14 @@ from solvers.fluid.given import Gauge, Level
 @dataclass(frozen=True)
 class Pool:
     """volume (W, n): of the particles in the plane, m²; gauges of pressure and of depth, by name; air: as volume;
-    flows: whether it flows at first."""
+    flows: whether it flows at first; porous: whether it is between grains."""
 
     volume: np.ndarray
     gauges: dict[str, Gauge]
     levels: dict[str, Level]
     air: np.ndarray = field(default_factory=lambda: np.zeros((1, 0)))
     flows: bool = False
+    porous: bool = False
 
     @classmethod
     def of(cls, preset: Preset, volume: np.ndarray, air: np.ndarray) -> "Pool | None":
@@ -27,7 +28,7 @@ class Pool:
             return None
         water, (gauges, levels, _) = preset.liquid, parted(preset.gauges)
         of_gauges = dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True))
-        return cls(volume, *of_gauges, air, preset.water.flow is not None)
+        return cls(volume, *of_gauges, air, preset.water.flow is not None, preset.wet)
 
     @property
     def spacing(self) -> float:

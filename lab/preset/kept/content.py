@@ -33,6 +33,7 @@ class Content:
     repeats: int
     axes: int
     faces: tuple[str, ...]
+    wet: bool
 
 
 def parted(gauges: Mapping[str, G]) -> tuple[dict[str, G], ...]:

@@ -31,9 +31,12 @@ def content(table: object) -> Content:
     bodies = tuple(name for name, part in parts if part.get("density") or part.get("mass"))
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))
     openings = (f"{name}.{opening}" for name, part in parts for opening in part.get("openings") or ())
+    water, grains = kept.get("water") or {}, kept.get("grains") or {}
+    poured = any(water.get(name) is not None for name in ("depth", "region", "radius"))
+    wet = has["water"] and has["grains"] and poured and grains.get("room") is None
     own = has["material"], has["ship"], has["axle"], gauges
     room = bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ()))
-    return Content(matters, *own, *room, repeats, axes, faces)
+    return Content(matters, *own, *room, repeats, axes, faces, wet)
 
 
 def _check(taken: Taken, value: object, key: str) -> None:
