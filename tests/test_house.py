@@ -23,6 +23,7 @@ FLOORS = {  # from the ground up: a room imports those before it
         "grains",
         "fluid",
         "liquid",
+        "mixture",
         "matters",
         "time",
         "scene",

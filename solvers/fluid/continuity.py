@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.forces import Forces
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot

@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.phases.tension import Tension
 from solvers.fluid.state import INSIDE, SPRAY
 from solvers.fluid.surface.void_indicator import VoidIndicator

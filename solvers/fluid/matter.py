@@ -15,8 +15,9 @@ from solvers.fluid.diagnostics import Diagnostics, Pool
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import Fluid
 from solvers.fluid.inflow.inflow import Inflow
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.lists.grid import grid_round
-from solvers.fluid.lists.neighbours import FluidContext, Lists
+from solvers.fluid.lists.neighbours import Lists
 from solvers.fluid.lists.order import Order, Tanks
 from solvers.fluid.lists.work_ranges import WorkRanges
 from solvers.fluid.mover import Mover
@@ -214,14 +215,14 @@ class WaterMatter(Matter):
         return [frozen(*(one[inside] for one in of_world)) for *of_world, inside in columns]
 
     def lay_by(self, laying) -> None:
-        """Have the particles laid between grains, by a `laying` (`solvers.mixture.start.Laying`)."""
+        """Have the particles laid between grains, by a `laying` (`solvers.mixture.exchange.Exchange`)."""
         self.laying = laying
 
     def place(self, position: np.ndarray | None) -> None:
         """Place the particles as the scene says, and the wall particles; all that was noted is forgotten."""
         p = self.particles
         self.sound_switch.use(False, self.scene.gravity)
-        start = self.laying.particles(position) if self.laying else self.fluid.particles
+        start = self.laying.lay(position) if self.laying else self.fluid.particles
         p.put(start, self.water, self.fluid.present)
         p.put_walls(*self.wall_points, self.bodies.solids)
         lists, sums = self.lists, (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind)

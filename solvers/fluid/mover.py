@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.damping import DampingZones
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, THINNEST
 from solvers.fluid.surface.void_indicator import VoidIndicator

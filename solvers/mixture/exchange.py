@@ -18,27 +18,37 @@ from solvers.space.axes import dot, named
 from solvers.tank.context import Context
 from solvers.tank.matter import Matter
 
-NEAR, FAR = 1.0, 1.5  # spacings in the bed from a particle of water: a grain is wet, and dry
+NEAR, FAR = 1.0, 1.5  # spacings in the bed from a particle of water: drag on a grain is whole, and none
 FEW = 0.05  # of x, below which the means over a step are told by their series
-LEAST_WATER = 1e-6  # of the kernel's sum over water: a grain that sees less feels none
 
 
 @ti.data_oriented
 class Exchange:
     """A grain feels −V_g ∇p + V_g ∇·τ + F_d, and the water the opposite (Anderson & Jackson 1967).
 
-    −∇p + ∇·τ is the force per volume on the water that its own pairs and walls make, and u_f its velocity, both
-    interpolated to the grain with the weights w_gi = V_i W/Σ V W. The reaction goes back with the same weights, so that
-    momentum is kept to rounding: in uniform pressure gradient the water keeps the share ε of the force.
+    The water's own pairs and walls make the force F_i on a particle as if it filled its volume alone. It keeps ε_i F_i,
+    and the grains about it get the rest, V_g W(r_ig)/Γ_i F_i each: what is taken is what is given, and water at rest
+    stays so in a bed of any shape (own derivation). The force on the water, −ε ∇p, is the adjoint of how its density
+    changes, −(ρ/ε) ∇·(ε u), so that neither makes energy. A force that is first interpolated to the grains, and spread
+    from there, is not: with it the surface of a bed blew up.
 
-    The water acts in steps of its own, the grains in many shorter ones. Through these the drag is the mean over the
-    step of the exact solution of du_g/dt = a_g + κ (u_f − u_g)/m_g, du_f/dt = a_f − κ (u_f − u_g)/m_s with the water's
-    share m_s = ρ V_g ε/(1 − ε) (own derivation): neither step is limited by drag, however fine the grains. The
-    coefficient κ stands through a step of the water. Impulses are summed for each grain and go to the water at its end.
+    Drag is between the grain and the velocity u_f at its place, interpolated with the weights V_i W/Σ V W, by which its
+    reaction is spread, too. The water acts in steps of its own, T, the grains in many shorter ones. Through these the
+    drag is the mean over the step of the exact solution of du_g/dt = a_g + κ (u_f − u_g)/m_g, du_f/dt = a_f − κ (u_f −
+    u_g)/m_s with the water's share m_s = ρ V_g ε/(1 − ε) (own derivation): neither step is limited by drag, however
+    fine the grains. The coefficient κ stands through a step of the water. Impulses of drag are summed for each grain
+    and go to the water at the step's end.
 
-    A grain is wet where the nearest particle of water is within a spacing of the bed, Δx/√ε, dry from 1.5 on.
+    The lift stands through T, too. Grains would then follow it as by Euler's method, x'' = −ω² x growing at the rate
+    ω² T/4. So as a step begins, each gets half a step of the change of its lift besides: its mean velocities over the
+    steps are those of the water's leapfrog (own derivation), and a lift that does not change does not knock. At the end
+    of a step grains are thus ahead of the water by ½ T of their lift.
 
-    Limits: no added mass, no lift, no lubrication; no friction of the slab's end planes.
+    The drag of a grain counts whole where the nearest particle of water is within a spacing of the bed, Δx/√ε, and not
+    at all from 1.5 on.
+
+    Limits: within 2 h of a wall the lift of single grains is off by up to 30 %, their sum is not; no added mass, no
+    lift across the flow, no lubrication; no friction of the slab's end planes.
 
     Units: κ kg/s, u m/s, a m/s², m kg, V_g m³, p Pa.
     """
@@ -51,11 +61,13 @@ class Exchange:
         mixture: Mixture = scene.mixture
         self.law, thickness = DRAG[mixture.drag](), scene.tanks[scene.hold].thickness
         self.porosity = Porosity(arrays, water.context, self.grains, context.walls.bounds, thickness)
+        self.laying = Laying(scene)
         g, own = self.grains, arrays.under("mixture")
         each = Axis("world", g.worlds), Axis("place", g.count)
         self.flow, self.lift, self.rise, self.impulse, self.push = (
             own.reals(each, *named(name, g.axes), kept=False) for name in ("flow", "lift", "rise", "impulse", "push")
         )
+        self.former = own.reals(g.each, *named("former", g.axes))
         self.rate, self.partner, self.share = own.reals(each, "rate", "partner", "share", kept=False)
         density = scene.fluid.water.density
         numbers = thickness, density, density * mixture.kinematic, 1.0 / mixture.finer
@@ -65,12 +77,28 @@ class Exchange:
         self.phases = first([Phase(self.gather, self.units)])
         self.closing = last([Phase(self.close), Phase(self.spread, water.units)])
 
+    def lay(self, position: np.ndarray) -> np.ndarray:
+        """The water (W, n) at rest between grains at `position` (W, n, 2) m; what was is forgotten."""
+        for field in self.former:
+            field.fill(0.0)
+        return self.laying.particles(position)
+
     @ti.func
     def gather(self, u, t, kick, dt):
         """What the water does to each grain of a unit through the coming step of the water."""
         w = self.units.world(u)
         for i in range(self.units.first(u), self.units.end(u)):
             self.gather_at(w, i)
+            for a in ti.static(range(self.grains.axes)):
+                self.lead(a, w, i, dt)
+
+    @ti.func
+    def lead(self, axis: ti.template(), w, i, dt):
+        """Give a grain the half step by which its velocity is ahead of the water's, as far as the lift has changed."""
+        g, lift = self.grains, self.lift[axis][w, i]
+        jump = 0.5 * dt * g.inverse_mass[w, i] * (lift - self.former[axis][w, i])
+        g.velocity[axis][w, i] = g.velocity[axis][w, i] + jump
+        self.former[axis][w, i] = lift
 
     @ti.func
     def gather_at(self, w, i):
@@ -80,6 +108,7 @@ class Exchange:
         far = ti.cast(c.get("reach") + 0.5 * self.lists.fixed_skin, p.where)
         seen, porosity, near = zero, zero, ti.cast(1e30, p.real)
         flow, push = [zero for _ in ti.static(range(p.axes))], [zero for _ in ti.static(range(p.axes))]
+        lift = [zero for _ in ti.static(range(p.axes))]
         start = w * p.stride * p.lanes
         for n in range(self.porosity.images):
             image = self.porosity.image(n)
@@ -101,28 +130,31 @@ class Exchange:
                     near = ti.min(near, square)
                     for a in ti.static(range(p.axes)):
                         flow[a] += weight * p.velocity[a][b, lane]
-                        push[a] += heavy * p.acceleration[a][b, lane]
+                        pushed = heavy * p.acceleration[a][b, lane]
+                        push[a] += pushed
+                        lift[a] += pushed * self.porosity.whole[b, lane]
         wet = zero
-        if c.get("value") * seen > LEAST_WATER:
+        if seen > 0.0:
             porosity /= seen
             away = ti.sqrt(near * porosity) / c.get("spacing")
             wet = ti.max(0.0, ti.min(1.0, (FAR - away) / (FAR - NEAR)))
         self.share[w, i], self.rate[w, i] = zero, zero
         for a in ti.static(range(p.axes)):
             self.impulse[a][w, i], self.lift[a][w, i], self.rise[a][w, i] = zero, zero, zero
-        if wet > 0.0:
-            self.share[w, i] = 1.0 / (self.numbers[0] * seen)
-            self.wet(w, i, wet, porosity, [flow[a] / seen for a in ti.static(range(p.axes))], push, seen)
+        if seen > 0.0:
+            if wet > 0.0:
+                self.share[w, i] = 1.0 / (self.numbers[0] * seen)
+            self.wet(w, i, wet, porosity, [flow[a] / seen for a in ti.static(range(p.axes))], push, lift, seen)
 
     @ti.func
-    def wet(self, w, i, wet, porosity, flow: ti.template(), push: ti.template(), seen):
-        """Note what acts on a grain that is in water: the share `wet`, and what it sees of the water."""
+    def wet(self, w, i, wet, porosity, flow: ti.template(), push: ti.template(), lift: ti.template(), seen):
+        """Note what acts on a grain that is in water by the share `wet`, from the sums of what it sees."""
         g, p, radius = self.grains, self.particles, self.grains.radius[w, i]
         volume, density = self.porosity.sphere[0] * self.numbers[0] * radius * radius * radius, self.numbers[1]
         walls = self.walls_at(w, i)
         for a in ti.static(range(p.axes)):
             self.flow[a][w, i] = flow[a] - walls[a]
-            self.lift[a][w, i] = (wet * volume / seen) * push[a]
+            self.lift[a][w, i] = volume * lift[a]
             self.rise[a][w, i] = push[a] / (seen * density)
         slip = [self.flow[a][w, i] - g.now[a][w, i] for a in ti.static(range(p.axes))]
         size = 2.0 * radius * self.numbers[3]
@@ -157,7 +189,7 @@ class Exchange:
             drag = rate * slip
             acceleration[a] = pushed + light * drag
             self.flow[a][w, i] = flow + kick * (risen - partner * drag)
-            self.impulse[a][w, i] = self.impulse[a][w, i] + kick * (lift + drag)
+            self.impulse[a][w, i] = self.impulse[a][w, i] + kick * drag
 
     @ti.func
     def means(self, x):
@@ -209,10 +241,10 @@ class Exchange:
                         weight = c.kernel.value(t)
                         for a in ti.static(range(p.axes)):
                             push[a] += self.push[a][w, k] * weight
-            mass = p.load(p.mass, b)
+            mass, share = p.load(p.mass, b), p.load(p.porosity, b)
             per_mass = p.load(p.volume, b) / (during * ti.max(mass, 1e-30))
             for a in ti.static(range(p.axes)):
-                p.store(p.acceleration[a], b, p.load(p.acceleration[a], b) + per_mass * push[a])
+                p.store(p.acceleration[a], b, p.load(p.acceleration[a], b) * share + per_mass * push[a])
         return True
 
 
@@ -223,5 +255,5 @@ def make_exchange(scene, context: Context, matters: Sequence[Matter]) -> Exchang
     grains, water = matters
     exchange = Exchange(context.arrays, context, scene, grains, water)
     grains.mover.soak(exchange)
-    water.lay_by(Laying(scene))
+    water.lay_by(exchange)
     return exchange

@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.grains.state import GrainState
 from solvers.machine.state import Axis, State
 from solvers.space.axes import dot, named
@@ -37,6 +37,9 @@ class Porosity:
         own, each = arrays.under("mixture"), (Axis("world", grains.worlds), Axis("place", grains.count))
         self.place = own.reals(each, *named("place", grains.axes), kind=own.place, kept=False)
         (self.area,) = own.reals(each, "area", kept=False)
+        p = context.particles
+        lanes = Axis("block", p.worlds * p.stride), Axis("lane", p.lanes)
+        (self.whole,) = own.wide(lanes, "whole", kept=False)  # 1/m², the factor of W over Γ
         self.sphere = own.holding("sphere", np.array([4.0 / 3.0 * np.pi / thickness]), "one")
 
     @ti.func
@@ -85,7 +88,9 @@ class Porosity:
                 t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
                 walled += p.volume[lists.block_of(j), lists.lane_of(j)] * c.kernel.value(t)
         value = c.get("value")
-        found = ti.max(1.0 - value * crowd / ti.max(1.0 - value * walled, LEAST_OPEN), LEAST)
+        whole = value / ti.max(1.0 - value * walled, LEAST_OPEN)
+        found = ti.max(1.0 - whole * crowd, LEAST)
+        p.store(self.whole, b, whole)
         before, s = p.load(p.porosity, b), p.load(p.deviation, b)
         before = ti.select(before > 0.0, before, found)  # not known yet: they start with their densities
         p.store(p.deviation, b, (1.0 + s) * (before / found) - 1.0)

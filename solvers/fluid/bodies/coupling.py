@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.walls.tangential_correction import TangentialCorrection
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State

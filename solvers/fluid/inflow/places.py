@@ -8,7 +8,7 @@ import taichi as ti
 from solvers.fluid.inflow.heads import ROOM, Heads
 from solvers.fluid.inflow.inlet import Inlet, mouth
 from solvers.fluid.inflow.rooms import Rooms
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.state import SPRAY, UNUSED
 from solvers.machine.state import Axis, State
 from solvers.motion.frame import turned

@@ -1,6 +1,5 @@
 """Neighbour lists: for each block, the particles near its bounding box, and when they are rebuilt."""
 
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -11,10 +10,9 @@ from solvers.fluid.constants import Constants
 from solvers.fluid.lists.listing import Listing
 from solvers.fluid.lists.order import BINS, ROWS, Order
 from solvers.fluid.lists.work_ranges import WorkRanges
-from solvers.fluid.state import UNUSED, Particles
+from solvers.fluid.state import UNUSED
 from solvers.machine.state import State, padded
 from solvers.machine.units import Units
-from solvers.motion.poses import Poses
 from solvers.space.axes import dot
 
 NEVER = 1e30  # m, a displacement that makes the lists invalid
@@ -288,15 +286,3 @@ class Lists:
                     lower[a] = ti.min(lower[a], p.place[a][b, lane])
                     upper[a] = ti.max(upper[a], p.place[a][b, lane])
         return lower, upper
-
-
-@dataclass(frozen=True)
-class FluidContext:
-    """What all passes over the water work on."""
-
-    units: Units
-    particles: Particles
-    ranges: WorkRanges
-    lists: Lists
-    constants: Constants
-    poses: Poses

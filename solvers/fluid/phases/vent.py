@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.given import Air
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.state import UNUSED
 from solvers.machine.state import Axis, State
 

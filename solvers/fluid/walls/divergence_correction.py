@@ -6,7 +6,7 @@ It is the adjoint of the extrapolation of their pressures.
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.state import State, padded
 from solvers.motion.poses import AT_MIDDLE

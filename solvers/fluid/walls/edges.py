@@ -7,7 +7,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Water
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.state import WALLS
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.layers import SHARP, edge_of

@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.bodies.coupling import FreeBodyCoupling
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.walls.slip_correction import SlipCorrection
 from solvers.fluid.walls.tangential_correction import TangentialCorrection
 from solvers.machine.phase import Phase

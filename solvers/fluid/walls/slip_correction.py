@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.machine.state import Axis, State
 from solvers.space.axes import dot, named
 

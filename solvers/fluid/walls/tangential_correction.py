@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.bodies.solids import sides_of
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.walls.layers import FAR, deep
 from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.state import Axis, State, padded

@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.fluid.lists.neighbours import FluidContext
+from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.surface.void_indicator import VoidIndicator
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.motion.poses import AT_START

@@ -1,0 +1,57 @@
+"""Grains in water, for tests: small tanks, and what the laws of drag say of them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from solvers.fluid.given import Fluid, Water, particles
+from solvers.fluid.timestep import longest_pace
+from solvers.mixture.given import Mixture
+from solvers.simulation import Simulation
+from tests.oracles.given import scene_of
+from tests.oracles.scenes import box, material
+
+DIAMETER, SPACING, GLASS = 4e-3, 8e-3, 2500.0  # m, m, kg/m³
+
+
+def rows(columns: int, lines: int, gap: float, lowest: float) -> np.ndarray:
+    """Places (1, n, 2) m of grains in a grid `gap` diameters apart, a little off their places, from a height on."""
+    y = (np.arange(columns) - 0.5 * (columns - 1)) * gap * DIAMETER
+    z = lowest + np.arange(lines) * gap * DIAMETER
+    place = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
+    place[:, 0] += np.random.default_rng(0).uniform(-0.02, 0.02, len(place)) * DIAMETER
+    return place[None]
+
+
+def soaked(place: np.ndarray, width: float, height: float, level: float, count: int, **changes) -> Simulation:
+    """A tank with grains at `place` (1, n, 2) m and so many particles of water up to a `level` (m)."""
+    drops = particles(1, count)
+    drops["volume"][0] = SPACING**2
+    of_water = {"sound_speed": 10.0, "alpha": 0.02} | changes.pop("water", {})
+    mixture = Mixture(**{"level": level} | changes.pop("mixture", {}))
+    glass = material(density=GLASS)
+    scene = scene_of(
+        np.full(place.shape[:2], 0.5 * DIAMETER), box(width, height), glass, glass, mixture=mixture,
+        fluid=Fluid(Water(SPACING, **of_water), drops), thickness=DIAMETER, stiffness_scale=1e-3, **changes,
+    )  # fmt: skip
+    step = scene.time_step()
+    scene = scene.holding(replace(scene.fluid, substeps=longest_pace(scene, step)), step=step)
+    return Simulation(scene, place, threads=1, arch="cpu")
+
+
+def di_felice(speed: float, porosity: float, density: float = 1000.0, viscosity: float = 1e-3) -> float:
+    """The drag of Di Felice (1994) per volume of grains and speed, kg/(m³ s), as the law is usually written."""
+    reynolds = density * DIAMETER * porosity * speed / viscosity
+    coefficient = (0.63 + 4.8 / np.sqrt(reynolds)) ** 2
+    power = 3.7 - 0.65 * np.exp(-0.5 * (1.5 - np.log10(reynolds)) ** 2)
+    force = coefficient * np.pi / 8.0 * density * DIAMETER**2 * (porosity * speed) ** 2 * porosity**-power
+    return force / (np.pi / 6.0 * DIAMETER**3) / speed
+
+
+def speed_between(driven: float, porosity: float) -> float:
+    """The speed (m/s) between water and grains at which drag balances a force per volume of grains (N/m³)."""
+    low, high = 1e-6, 10.0
+    for _ in range(100):
+        middle = np.sqrt(low * high)
+        low, high = (middle, high) if di_felice(middle, porosity) * middle < driven else (low, middle)
+    return low

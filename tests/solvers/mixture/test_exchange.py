@@ -1,0 +1,172 @@
+"""Grains and water in one tank: momentum, weight, and the laws of drag."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import taichi as ti
+
+from solvers.machine import runtime
+from solvers.machine.state import State
+from solvers.mixture.drag import DRAG
+from solvers.simulation import Simulation
+from tests.oracles.soaked import DIAMETER, GLASS, SPACING, di_felice, rows, soaked, speed_between
+
+GRAVITY, WIDTH, LEVEL = 9.81, 0.08, 0.05
+DENSITY, VISCOSITY = 1000.0, 1e-3
+
+
+@pytest.fixture(scope="module")
+def run() -> Iterator[Simulation]:
+    """Grains that fall into water: 72 of glass, from over its surface."""
+    made = soaked(rows(12, 6, 1.05, 0.06), WIDTH, 0.12, LEVEL, 62)
+    yield made
+    made.close()
+
+
+def masses(run: Simulation) -> tuple[np.ndarray, np.ndarray]:
+    """Masses (n,) kg of the grains and of the particles of water."""
+    return run.grains.mass[0], run.water.particles.read(run.water.particles.mass)[0][0] * DIAMETER
+
+
+def momentum(run: Simulation) -> np.ndarray:
+    """The momentum (2,) kg m/s of all that is in the tank."""
+    of_grains, of_water = masses(run)
+    state = run.grains.grains.velocity
+    speed = np.stack([field.to_numpy()[0, : len(of_grains)] for field in state], axis=-1)
+    flow = np.stack(run.water.particles.read(*run.water.particles.velocity), axis=-1)[0]
+    lift = [field.to_numpy()[0, : len(of_grains)].sum() for field in run.grains.mover.water.lift]
+    ahead = 0.5 * run.exchange_interval * run.dt * np.array(lift)  # by which grains are ahead of the water
+    return of_grains @ speed + of_water @ flow - ahead
+
+
+def on_walls(run: Simulation) -> np.ndarray:
+    """The impulse (2,) N s on the tank up to now."""
+    loads = [matter.load.impulse[:2] for matter in run.matters.values()]
+    return np.sum([[field.to_numpy().sum() for field in load] for load in loads], axis=0)
+
+
+def test_momentum_is_kept_to_rounding(run):
+    """What grains and water gain together is gravity's impulse less that on the walls, through splash and landing."""
+    run.advance(run.exchange_interval)
+    weight = GRAVITY * sum(mass.sum() for mass in masses(run))
+    start, borne, begun = momentum(run), on_walls(run), run.time
+    for _ in range(4):
+        run.advance(run.whole(round(0.06 / run.dt)))
+        found = momentum(run) - start + on_walls(run) - borne
+        found[1] += weight * (run.time - begun)
+        np.testing.assert_allclose(found, 0.0, atol=1e-12 * weight * run.time)
+    assert run.snapshot()["position"][0, :, 1].min() < DIAMETER  # grains are at the floor
+
+
+def test_the_floor_bears_the_weight_of_all(run):
+    """At rest, within 1e-3, in the mean over half a second."""
+    run.advance(run.whole(round(0.8 / run.dt)))
+    of_grains, of_water = on_floor(run, 0.5)
+    assert of_grains + of_water == pytest.approx(GRAVITY * sum(mass.sum() for mass in masses(run)), rel=1e-3)
+
+
+def on_floor(run: Simulation, lasts: float) -> tuple[float, float]:
+    """The mean forces (N) of grains and water on the floor, for so long (s) from now on."""
+    before, begun = [matter.load.impulse[1].to_numpy().sum() for matter in run.matters.values()], run.time
+    run.advance(run.whole(round(lasts / run.dt)))
+    after = [matter.load.impulse[1].to_numpy().sum() for matter in run.matters.values()]
+    grains, water = np.subtract(before, after) / (run.time - begun)
+    return grains, water
+
+
+@pytest.fixture(scope="module")
+def coefficient():
+    """The laws' coefficients, from the kernels."""
+    runtime.initialise(1)
+    held = State()
+    out = held.holding("out", np.zeros(1), "one")
+    held.finish()
+    laws = {name: law() for name, law in DRAG.items()}
+
+    @ti.kernel
+    def find(law: ti.template(), speed: float, porosity: float, size: float):
+        out[0] = law.coefficient(speed, porosity, size, DENSITY, VISCOSITY)
+
+    def found(name: str, speed: float, porosity: float, size: float = DIAMETER) -> float:
+        find(laws[name], speed, porosity, size)
+        return float(out.to_numpy()[0])
+
+    yield found
+    held.release()
+
+
+def test_laws_of_drag_have_their_limits(coefficient):
+    """Ergun's is the pressure drop of 150 and 1.75, Wen and Yu's is Stokes' alone; Gidaspow's is the one or other."""
+    speed, porosity, size = 0.02 / 0.4, 0.4, 3e-3  # 20 mm/s through a bed: 1875 + 2187 Pa/m
+    drop = 0.6 / porosity * coefficient("ergun", speed, porosity, size) * speed
+    assert drop == pytest.approx(1875.0 + 2187.5, rel=1e-3)
+    stokes = 18.0 * VISCOSITY / DIAMETER**2
+    assert coefficient("wen-yu", 1e-9, 1.0) == pytest.approx(stokes, rel=1e-3)
+    assert coefficient("di-felice", 1e-9, 1.0) == pytest.approx(0.75 * 4.8**2 * VISCOSITY / DIAMETER**2, rel=1e-2)
+    assert coefficient("gidaspow", speed, 0.4) == pytest.approx(coefficient("ergun", speed, 0.4), rel=0.01)
+    assert coefficient("gidaspow", speed, 0.99) == pytest.approx(coefficient("wen-yu", speed, 0.99), rel=0.02)
+    for porosity in (0.4, 0.7, 0.95):
+        for speed in (1e-3, 0.1, 1.0):
+            assert coefficient("di-felice", speed, porosity) == pytest.approx(di_felice(speed, porosity), rel=1e-5)
+
+
+@pytest.mark.slow
+def test_each_matter_bears_its_share_and_a_soaked_bed_is_quiet():
+    """Water ρ g H on the whole floor, grains their buoyant weight, each within 2 % in a bed of 15 layers under water.
+
+    The bed is nearly twice as deep as the kernel's radius. Near walls the sums of single grains are off by more.
+    Grains at rest have less than 1e-6 m g d each.
+    """
+    place = rows(19, 15, 1.0, 0.5 * DIAMETER)
+    place[..., 0] *= 1.01
+    solid = 285 * np.pi / 6.0 * DIAMETER**2
+    run = soaked(place, WIDTH, 0.14, 0.09, round((WIDTH * 0.09 - solid) / SPACING**2))
+    run.advance(run.whole(round(1.5 / run.dt)))
+    grains, water = on_floor(run, 1.0)
+    of_grains, of_water = (mass.sum() for mass in masses(run))
+    now = run.observe()
+    run.close()
+    assert grains == pytest.approx(GRAVITY * of_grains * (1.0 - DENSITY / GLASS), rel=0.02)
+    assert water == pytest.approx(GRAVITY * (of_water + of_grains * DENSITY / GLASS), rel=0.02)
+    assert now["kinetic"][0] + now["rotational"][0] < 1e-6 * of_grains * GRAVITY * DIAMETER
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gap", [1.25, 1.6])
+def test_a_suspension_settles_as_richardson_and_zaki_say(gap):
+    """All grains together fall with −ε w where drag bears their buoyant weight, and the water bears it as a gradient.
+
+    w is of the law's own closed form. Grains come within 1 % of their speed in 80 ms; until 130 ms the suspension is
+    even, then it overturns. Speed: that of an exponent of Richardson and
+    Zaki off by 0.25. Gradient: 5 %, in the mean over one period of the slowest sound, 4 H/c0 = 67 ms,
+    in which grains still gain speed with 0.3 m/s² on average, a thirtieth of g.
+    """
+    width = 0.128
+    columns = int(width / (gap * DIAMETER))
+    gap = width / columns / DIAMETER
+    porosity = 1.0 - 2.0 / 3.0 * 0.25 * np.pi / gap**2
+    count = round(0.8 * width * 0.3 / SPACING**2)
+    run = soaked(
+        rows(columns, int(0.2 / (gap * DIAMETER)), gap, 0.04), width, 0.32, 0.3, count, water={"sound_speed": 18.0}
+    )
+    found = []
+    while run.time < 0.127:
+        run.advance(run.whole(round(2e-3 / run.dt)))
+        now = run.snapshot()
+        place, speed = now["position"][0], now["velocity"][0, :, 1]
+        low, high = place[:, 1].min() + 0.04, place[:, 1].max() - 0.04
+        inner = (place[:, 1] > low) & (place[:, 1] < high)
+        depth = now["water_position"][0, :, 1]
+        within = (depth > low) & (depth < high)
+        slope = np.polyfit(depth[within], now["water_pressure"][0, within], 1)[0]
+        found.append((run.time, speed[inner].mean(), slope))
+    run.close()
+    time, speed, slope = np.array(found).T
+    steady, period = time > 0.08, time > 0.06
+    driven = porosity * (GLASS - DENSITY) * GRAVITY
+    assert speed[steady].mean() == pytest.approx(
+        -porosity * speed_between(driven, porosity), rel=-0.25 * np.log(porosity)
+    )
+    heavier = 1.0 + (1.0 - porosity) * (GLASS - DENSITY) / DENSITY
+    assert slope[period].mean() == pytest.approx(-DENSITY * GRAVITY * heavier, rel=0.05)
