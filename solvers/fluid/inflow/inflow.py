@@ -8,7 +8,8 @@ import taichi as ti
 from solvers.fluid.inflow.heads import Heads
 from solvers.fluid.inflow.places import Places
 from solvers.fluid.inflow.rooms import Rooms
-from solvers.fluid.lists.neighbours import NEVER, FluidContext
+from solvers.fluid.lists.context import FluidContext
+from solvers.fluid.lists.neighbours import NEVER
 from solvers.fluid.state import FAR, UNUSED
 from solvers.fluid.state import ROOM as USUAL
 from solvers.machine.errors import Unavailable
