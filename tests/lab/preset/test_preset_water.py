@@ -211,11 +211,6 @@ FAULTS = {
         {"water__diffusion": "none", "water__delta": 0.1},
         'water.delta: there is no diffusion of density with diffusion = "none".',
     ),
-    "grains in it": (
-        GRAINS,
-        "water: grains and water in one tank are not computed yet; leave out one of them, or give the water a tank of "
-        "its own, [tanks.NAME], or the grains a room of a hull, grains.room.",
-    ),
     "no ship": (
         {"water__model": "linear"},
         'water.model: "linear" is for tanks in a ship; add a table [ship], or take "sph".',

@@ -10,6 +10,7 @@ from lab.preset.sections.water import liquid
 from lab.preset.units import show
 
 COARSEST = 2.0  # grains' diameters: the least spacing of water, whose kernel then smooths over four of them
+ROUNDED = 0.9  # what rounding to a whole number of rows over the depth may leave of that
 
 
 class Whole(liquid.Wet, Protocol):
@@ -20,9 +21,10 @@ class Whole(liquid.Wet, Protocol):
     axes: int
     shapes: dict
     mean_diameter: float
-    diameters: tuple[float, float]
     inflow: dict
     contact: Contact
+    tanks: dict
+    axle: object | None
 
 
 def is_wet(preset: Whole) -> bool:
@@ -46,17 +48,17 @@ def check_wet(preset: Whole) -> None:
     for name in ("region", "radius", "flow", "periodic"):
         if getattr(water, name) is not None:
             raise LabError(f"water.{name}: water between grains starts level and at rest; give water.depth.")
-    largest = preset.diameters[1]
-    if water.spacing != "auto" and liquid.spacing(preset) < COARSEST * preset.mean_diameter:
+    if water.spacing != "auto" and liquid.spacing(preset) < ROUNDED * COARSEST * preset.mean_diameter:
         least = show(COARSEST * preset.mean_diameter, "m")
         raise LabError(
             f"water.spacing: {show(water.spacing, 'm')} is under two grains' diameters; the water is a mean over many "
             f"grains: take at least {least}."
         )
-    if preset.thickness < largest * (1.0 - 1e-9):
+    if preset.thickness < preset.mean_diameter * (1.0 - 1e-9):
+        least = show(preset.mean_diameter, "m")
         raise LabError(
-            f"tank.thickness: {show(preset.thickness, 'm')} is less than the largest grain's diameter; in water the "
-            f"slab is as thick as that: take {show(largest, 'm')}."
+            f"tank.thickness: {show(preset.thickness, 'm')} is less than the grains' mean diameter; in water the slab "
+            f"is a layer of whole grains: take at least {least}."
         )
     if grains.true_size is not None and grains.true_size > preset.mean_diameter * (1.0 + 1e-9):
         raise LabError(
@@ -68,6 +70,8 @@ def check_wet(preset: Whole) -> None:
 def _check_company(preset: Whole) -> None:
     """Raise LabError for what cannot be together with grains in water."""
     beside = {
+        "ship": (preset.ship is not None, "aboard a ship"),
+        "axle": (preset.axle is not None, "in a tank on an axle"),
         "tank.along": (preset.axes > 2, "in space"),
         "shapes": (bool(preset.shapes), "of irregular grains"),
         "air": (preset.air is not None, "with air"),
@@ -75,6 +79,7 @@ def _check_company(preset: Whole) -> None:
         "water.full": (preset.water.full, "in a full tank"),
         "water.model": (preset.water.model != "sph", "in frozen, linear or level water"),
         "inflow": (bool(preset.inflow), "with inflow"),
+        "tanks": (bool(preset.tanks), "beside further tanks"),
         "water.shifting": (preset.water.shifting != "none", "with shifted particles"),
         "contact.cohesion": (preset.contact.cohesion != "none", "with bridges"),
     }
