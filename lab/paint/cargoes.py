@@ -28,7 +28,7 @@ WALL = 5.0  # pixels
 @in_turn
 def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
     """Paint the first frames of recordings into one PNG file; folders: by cargo name. Raises LabError."""
-    initialise()
+    initialise(fields=False)
     rows = -(-len(folders) // COLUMNS)
     image = Image.new("RGB", (COLUMNS * (CELL[0] + EDGE) + EDGE, rows * (CELL[1] + EDGE) + EDGE), palette.PAPER)
     for k, (name, folder) in enumerate(folders.items()):

@@ -131,7 +131,7 @@ def get_ready(cores: int) -> None:
 
     use_cores(cores)
     with suppress(Unavailable):  # the first job says so
-        initialise()
+        initialise(fields=False)
         picture, disc = np.zeros((32, 32, 3), np.uint8), np.array([[9.0, 9.0, 5.0, 1.0, 0.0]])
         paint_tank(picture, Camera(1.0, (0.0, 32.0)), np.array([[2.0, 2.0], [20.0, 2.0], [9.0, 20.0]]), 1.0, INK, INK)
         paint_grains(picture, disc, np.array([INK]), np.array([INK]))

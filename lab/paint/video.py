@@ -62,7 +62,7 @@ def render_recording(
     before the first damaged one. piece (k, n): only the k-th, from 0, of n even parts of the pictures, which
     `lab.paint.edit.batches` joins. progress(done, total) is called after each picture. Raises LabError.
     """
-    initialise()
+    initialise(fields=False)
     wishes = {"colour": colour, "frame": frame, "width": width, "height": height, "speed": speed, **style}
     comment = made_with(**wishes, world=world, sound=sound, hero=hero)
     if hero:
@@ -127,7 +127,7 @@ def render_grid(
     if not 1 <= len(beds) <= MOST_IN_GRID:
         raise LabError(f"A grid has room for 1 to {MOST_IN_GRID} beds (got {len(beds)}): choose some of them.")
     chosen = [bed if isinstance(bed, tuple) else (bed, 0) for bed in beds]
-    initialise()
+    initialise(fields=False)
     with ExitStack() as opened:
         footages = {
             path: opened.enter_context(open_footage(path)) for path in dict.fromkeys(path for path, _ in chosen)
@@ -177,7 +177,7 @@ def poster(
 
     It shows the frame nearest to `time` (s), or to this fraction of the duration. Raises LabError.
     """
-    initialise()
+    initialise(fields=False)
     with open_footage(path) as footage:
         beds = choose_beds(footage, world)
         look = choose_look(footage, colour=colour, frame=frame, width=width, height=height, **style)
@@ -209,7 +209,7 @@ def contact_sheet(
 
     wishes: fields of a `Look`. The moments are closer together where the contents move faster. Raises LabError.
     """
-    initialise()
+    initialise(fields=False)
     with open_footage(path) as footage:
         (bed,) = choose_beds(footage, world or 0)
         look = choose_look(footage, **wishes)

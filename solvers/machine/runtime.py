@@ -122,12 +122,15 @@ def _real_vulkan() -> bool:
     return device and bool(ti._lib.core.with_vulkan())
 
 
-def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **options) -> None:
+def initialise(
+    threads: int = 0, arch: str = "cpu", precision: str = "f64", *, fields: bool = True, **options: object
+) -> None:
     """Start Taichi with `threads` threads (0: all cores); nothing happens if it runs with these settings already.
 
-    A restart invalidates every field and kernel made before. Taichi is also restarted when no arrays are in use any
-    more: it numbers its fields from the start on, and finds a cached kernel only if the fields have the same numbers
-    again. Raises Unavailable (see `choose_arch`), also if Taichi lacks a cache folder or memory.
+    A restart invalidates every field and kernel made before. For kernels of `fields` Taichi is also restarted when it
+    has run, or has held arrays, and no arrays are in use any more: it numbers its fields from the start on, and finds a
+    cached kernel only if the fields have the same numbers again. Kernels that are given all their arrays, as those that
+    paint, need no `fields`. Raises Unavailable (see `choose_arch`), also if Taichi lacks a cache folder or memory.
     """
     global _running, _used
     if kernel_cache.missing():
@@ -135,10 +138,9 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
     wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
     if _live:
         gc.collect()  # a simulation that nobody uses any more refers to itself in circles
-    refused = ti.lang.impl.get_runtime().unfinalized_fields_builder  # of simulations that ended as they were made
-    anew = bool(refused) and not _live
-    refused.clear()
-    if _running == wanted and not options and not anew and (_live or not _used):
+    anew = _forget_refused() and not _live
+    fresh = _live or not (_used or ti.lang.impl.get_runtime().materialized)
+    if _running == wanted and not options and not anew and (fresh or not fields):
         return
     for state in _live:
         memory.close(state.fields)
@@ -147,6 +149,15 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
     with redirect_stdout(StringIO()):  # Taichi prints its backend, and no option turns that off
         _start(*wanted, options)
     _running = None if options else wanted
+
+
+def _forget_refused() -> bool:
+    """Forget the fields of simulations that ended as they were made; returns whether there were any."""
+    waiting = ti.lang.impl.get_runtime().unfinalized_fields_builder
+    refused = [builder for builder in waiting if builder is not ti.lang.impl._root_fb]  # which is Taichi's own
+    for builder in refused:
+        del waiting[builder]
+    return bool(refused)
 
 
 def _start(threads: int, arch: str, real, options: dict) -> None:

@@ -244,6 +244,36 @@ def test_fields_in_use_stay_and_field_numbers_restart_after_all_are_released():
     third.release()
 
 
+def test_kernels_without_fields_are_kept_and_leave_the_numbers_of_fields_alone(monkeypatch):
+    """As painters' kernels: pictures one after another, also after a run, need one start of Taichi."""
+    starts, start = [], runtime._start
+    monkeypatch.setattr(runtime, "_start", lambda *plan: (starts.append(plan), start(*plan)))
+
+    def numbered() -> int:
+        runtime.initialise(1)
+        arrays = State()
+        (field,) = arrays.reals(axes(3), "row")
+        arrays.finish()
+        number = field.snode.ptr.id
+        field.fill(1.0)
+        arrays.release()
+        return number
+
+    def paint() -> None:
+        runtime.initialise(1, fields=False)
+        assert _work(1, 2) == pytest.approx(np.sin(1.0))
+
+    runtime.initialise(2)  # whatever was there before
+    starts.clear()
+    paint()
+    paint()
+    assert len(starts) == 1
+    first = numbered()
+    paint()
+    assert len(starts) == 2
+    assert numbered() == first
+
+
 @ti.kernel
 def _work(tasks: ti.i32, turns: ti.i32) -> ti.f64:
     total = 0.0
