@@ -8,7 +8,7 @@ a `dict[str, dataclass]` (tables that users name). `X | None` may be left out. E
 import types
 from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from lab.base.errors import LabError
@@ -71,17 +71,17 @@ class Taken:
     alike: bool = False
     of: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def table(self) -> type | None:
         """The dataclass of a table of keys, None for other values."""
         return self.kind if is_dataclass(self.kind) and self.kind is not Table else None
 
-    @property
+    @cached_property
     def named(self) -> type | None:
         """The dataclass of the tables that users name, if the field holds such."""
         return get_args(self.kind)[1] if get_origin(self.kind) is dict else None
 
-    @property
+    @cached_property
     def below(self) -> type | None:
         """The dataclass of the tables below this field, named by users or not."""
         return self.table or self.named
