@@ -8,7 +8,7 @@ and ranges of quantities with a unit, only the lab checks.
 
 import json
 from collections.abc import Mapping
-from typing import Any, get_args, get_origin
+from typing import Any
 
 from lab.preset.fields import NAME, Table, Taken, defaults_of, marked, taken_of
 from lab.preset.reader import LONGEST_NAME
@@ -69,7 +69,7 @@ def _value(taken: Taken) -> dict:
         return _table(taken.table)
     if taken.named:
         return _named(taken.named)
-    if get_origin(taken.kind) is tuple:
+    if taken.items:
         return _list(taken)
     if taken.kind is float:
         return _number(taken)
@@ -85,9 +85,8 @@ def _named(model: type) -> dict:
 
 
 def _list(taken: Taken) -> dict:
-    parts = get_args(taken.kind)
-    items = [_values(taken.item(part)) for part in parts if part is not Ellipsis]
-    if parts[-1] is Ellipsis:
+    items = [_values(item) for item in taken.items]
+    if taken.many:
         return {"type": "array", "items": items[0]}
     return {"type": "array", "items": items, "minItems": len(items), "maxItems": len(items), "additionalItems": False}
 

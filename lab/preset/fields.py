@@ -86,11 +86,21 @@ class Taken:
         """The dataclass of the tables below this field, named by users or not."""
         return self.table or self.named
 
-    def item(self, kind: Any) -> "Taken":
-        """What an item of a list takes: by its own annotation, else the unit and range of the whole list."""
-        if get_origin(kind) is Annotated:
-            return taken_from(kind)
-        return Taken(kind, symbol=self.symbol, interval=self.interval)
+    @cached_property
+    def items(self) -> "tuple[Taken, ...]":
+        """What the items of a list take, all the same one where it may have `many`; empty for other values.
+
+        An item goes by its own annotation, else by the unit and range of the whole list.
+        """
+        kinds = get_args(self.kind) if get_origin(self.kind) is tuple else ()
+        alike = {"symbol": self.symbol, "interval": self.interval}
+        own = (taken_from(kind) if get_origin(kind) is Annotated else Taken(kind, **alike) for kind in kinds)
+        return tuple(one for one in own if one.kind is not Ellipsis)
+
+    @cached_property
+    def many(self) -> bool:
+        """Whether a list may have any number of items."""
+        return Ellipsis in get_args(self.kind)
 
 
 @cache

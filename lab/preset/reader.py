@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, TypeVar, get_args, get_origin
+from typing import Any, TypeVar
 from unicodedata import category
 
 from lab.base.errors import LabError
@@ -100,7 +100,7 @@ def _value(taken: Taken, raw: object, key: str) -> Any:
         raise LabError(f"{key}: {quoted(raw)} is unknown; {_word_hint(taken, raw)}")
     if taken.table:
         return read(taken.table, raw, key)
-    if get_origin(taken.kind) is tuple:
+    if taken.items:
         return _tuple(taken, raw, key)
     if taken.named:
         return _named(taken.named, raw, key)
@@ -156,22 +156,19 @@ def _named(kind: type, raw: object, key: str) -> dict[str, Any]:
 
 
 def _tuple(taken: Taken, raw: object, key: str) -> tuple:
-    parts = get_args(taken.kind)
-    length = None if parts[-1] is Ellipsis else len(parts)
-    if not isinstance(raw, list | tuple) or length not in (None, len(raw)):
+    items = taken.items
+    if not isinstance(raw, list | tuple) or not (taken.many or len(raw) == len(items)):
         raise LabError(f"{key}: {_needed(taken)} (got {quoted(raw)}).")
-    kinds = parts[:1] * len(raw) if length is None else parts
-    return tuple(_value(taken.item(kind), raw[i], f"{key}[{i}]") for i, kind in enumerate(kinds))
+    items = items * len(raw) if taken.many else items
+    return tuple(_value(item, one, f"{key}[{i}]") for i, (item, one) in enumerate(zip(items, raw, strict=True)))
 
 
 def _needed(taken: Taken) -> str:
     """The clause of an error message that asks for a value."""
     if taken.kind is float:
         return needed(taken.symbol)
-    if get_origin(taken.kind) is tuple:
-        parts = get_args(taken.kind)
-        size = "a list" if parts[-1] is Ellipsis else f"a list of {len(parts)}"
-        return f"{size} is needed"
+    if taken.items:
+        return "a list is needed" if taken.many else f"a list of {len(taken.items)} is needed"
     asked = {int: "a whole number", bool: "true or false", str: "a text in quotes", Table: "a text in quotes"}
     return f"{asked.get(taken.kind, 'a table of keys')} is needed"
 

@@ -1,7 +1,7 @@
 """The reference of presets as a page: every section and every key, from the schema's own fields."""
 
 from collections.abc import Iterator
-from typing import Any, get_args, get_origin
+from typing import Any
 
 from lab.preset.fields import NAME, Table, Taken, defaults_of, join, taken_of
 from lab.preset.schema import Preset
@@ -63,12 +63,11 @@ def _kind_of(taken: Taken) -> str:
         return ""
     if taken.below:
         return "tables with names of your own" if taken.named else "a table"
-    if get_origin(taken.kind) is tuple:
-        parts = get_args(taken.kind)
-        inner = [_kind_of(taken.item(part)) for part in parts if part is not Ellipsis]
+    if taken.items:
+        inner = [_kind_of(item) for item in taken.items]
         if len(set(inner)) > 1:
             return f"a list of {' and '.join(inner)}"
-        return f"a list, each {inner[0]}" if parts[-1] is Ellipsis else f"a list of {len(parts)}, each {inner[0]}"
+        return f"a list, each {inner[0]}" if taken.many else f"a list of {len(inner)}, each {inner[0]}"
     if taken.kind is float:
         name, _, example = kind(taken.symbol)
         return name if taken.symbol == "1" else f'{name}, e.g. "{example}"'

@@ -1,7 +1,6 @@
 """What a recorded preset holds, and whether it can be one; the preset itself is made by `lab.preset.recorded`."""
 
 from collections.abc import Mapping
-from typing import Any, get_args, get_origin
 
 from lab.preset import formats
 from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
@@ -45,7 +44,7 @@ def _check(taken: Taken, value: object, key: str) -> None:
         return
     if taken.below or taken.kind is Table:
         _check_table(taken, value, key)
-    elif get_origin(taken.kind) is tuple:
+    elif taken.items:
         _check_list(taken, value, key)
     elif not _is(taken.kind, value):
         raise ValueError(f"{key}: another kind of value is needed")
@@ -59,13 +58,15 @@ def _check_table(taken: Taken, value: object, key: str) -> None:
         for name, column in _mapping(value.get("columns"), key).items():
             _check(Taken(tuple[float, ...]), column, join(key, name))
     elif taken.named:
+        one = Taken(taken.named)
         for name, inner in value.items():
-            _check(Taken(taken.named), inner, join(key, name))
+            _check(one, inner, join(key, name))
     else:
+        defaults = defaults_of(taken.table)
         for name, inner in taken_of(taken.table).items():
             if name in value:
                 _check(inner, value[name], join(key, name))
-            elif name not in defaults_of(taken.table):
+            elif name not in defaults:
                 raise ValueError(f"{join(key, name)}: is missing")
 
 
@@ -76,16 +77,13 @@ def _mapping(value: object, key: str) -> Mapping:
 
 
 def _check_list(taken: Taken, value: object, key: str) -> None:
-    parts: tuple[Any, ...] = get_args(taken.kind)
-    many = parts[-1] is Ellipsis
-    if not isinstance(value, list | tuple) or (not many and len(value) != len(parts)):
+    items, many = taken.items, taken.many
+    if not isinstance(value, list | tuple) or (not many and len(value) != len(items)):
         raise ValueError(f"{key}: another kind of list is needed")
-    kinds = parts[:1] * len(value) if many else parts
-    one = [taken.item(kind) for kind in kinds[: 1 if many else None]]
-    if many and one[0].kind is float and set(map(type, value)) <= {int, float}:  # a column, maybe of a million numbers
+    if many and items[0].kind is float and set(map(type, value)) <= {int, float}:  # maybe a million
         return
     for place, inner in enumerate(value):
-        _check(one[0] if many else one[place], inner, f"{key}[{place}]")
+        _check(items[0 if many else place], inner, f"{key}[{place}]")
 
 
 def _is(kind: type | None, value: object) -> bool:

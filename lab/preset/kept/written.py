@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import fields
-from typing import get_args, get_origin
 
 from lab.preset.fields import Taken, defaults_of, taken_of
 from lab.preset.kept.read import FILE, PLAIN, SEEN, hash_of_sources
@@ -49,7 +48,6 @@ def _kind(taken: Taken) -> object:
         return {"keys": _table(taken.table)}
     if taken.named:
         return {"named": _table(taken.named)}
-    if get_origin(taken.kind) is tuple:
-        parts = get_args(taken.kind)
-        return {"items": [_taken(taken.item(part)) for part in parts if part is not ...], "many": parts[-1] is ...}
+    if taken.items:
+        return {"items": [_taken(item) for item in taken.items], "many": taken.many}
     return NAMES[taken.kind]
