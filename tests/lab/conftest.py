@@ -5,6 +5,7 @@ import pytest
 from lab.assembly import ship_tables
 from lab.report import plots
 from solvers.fluid.start import packing
+from solvers.machine import runtime
 
 PANELS = 32  # of 80: a tenth of the time; the tests of the potential flow say how it converges
 
@@ -14,6 +15,14 @@ def coarse_hulls():
     """Hulls of few panels wherever a preset has a ship."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ship_tables, "PANELS", PANELS)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_core():
+    """Runs and pictures on one core, as most tests ask for: Taichi is not started anew for each change of threads."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runtime, "_most_cores", 1)
         yield
 
 

@@ -56,14 +56,23 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
 
 def sample(time: float, worlds: int = 1, axes: int = PLANE, faces: int = 0, **values: object) -> dict:
     """A row of the series, in space of a tank with so many faces; quantities that are not given are zero."""
-    quantities = series_of(False, GRAINS, in_space=faces > 0)
-    return {**_zeros(quantities, worlds, axes=axes, faces=faces), "time": time, **values}
+    shapes = _of_series(worlds, axes, faces)
+    return {**{name: np.zeros(shape) for name, shape in shapes.items()}, "time": time, **values}
 
 
-def _zeros(quantities: tuple, worlds: int, count: int = 0, parts: int = 0, axes: int = PLANE, faces: int = 0) -> dict:
+@cache
+def _of_series(worlds: int, axes: int, faces: int) -> dict[str, tuple]:
+    return _shapes(series_of(False, GRAINS, in_space=faces > 0), worlds, axes=axes, faces=faces)
+
+
+@cache
+def _of_frames(worlds: int, count: int, parts: int, axes: int) -> dict[str, tuple]:
+    return _shapes(frames_of(False, GRAINS), worlds, count, parts, axes)
+
+
+def _shapes(quantities: tuple, worlds: int, count: int = 0, parts: int = 0, axes: int = PLANE, faces: int = 0) -> dict:
     sizes = {"world": worlds, "grain": count, "part": parts, "face": faces}
-    rows = rows_of([quantity.within(axes) for quantity in quantities], sizes)
-    return {name: np.zeros(shape) for name, (shape, _) in rows.items()}
+    return {name: shape for name, (shape, _) in rows_of([one.within(axes) for one in quantities], sizes).items()}
 
 
 def of_a_ship(worlds: int = 1, **values: object) -> dict:
@@ -74,7 +83,8 @@ def of_a_ship(worlds: int = 1, **values: object) -> dict:
 def frame(time: float, worlds: int = 1, count: int = 4, axes: int = PLANE, **values: object) -> dict:
     """A picture frame without parts, or with those whose places `part` gives; what is not given is zero."""
     parts = np.shape(values["part"])[1] if "part" in values else 0
-    return {**_zeros(frames_of(False, GRAINS), worlds, count, parts, axes), "time": time, **values}
+    zero = {name: np.zeros(shape) for name, shape in _of_frames(worlds, count, parts, axes).items()}
+    return {**zero, "time": time, **values}
 
 
 def record(

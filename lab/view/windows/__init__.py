@@ -26,7 +26,7 @@ def open_window(
         raise LabError(f"there is no display for a window here: {instead}")
     from solvers.machine.runtime import initialise
 
-    initialise()
+    initialise(fields=False)
     tried = FRONT_ENDS if front_end == "auto" else {front_end: FRONT_ENDS[front_end]}
     window = next(filter(None, (module.open_window(size) for module in tried.values())), None)
     if window is None:

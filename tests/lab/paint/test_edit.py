@@ -64,7 +64,7 @@ def test_the_pace_is_slow_about_the_event_and_even_elsewhere(slide):
 
 
 def test_the_last_still_says_what_happened_and_earlier_pictures_do_not(slide):
-    initialise()
+    initialise(fields=False)
     with open_footage(slide) as footage:
         beds = choose_beds(footage)
         film = Film(beds, choose_look(footage, width=640, height=360), timeline=hero_timeline(beds[0], 1.0))
@@ -159,7 +159,7 @@ def test_cargo_is_what_is_named_else_its_outline_else_its_density():
 
 
 def test_named_cargo_is_painted_in_its_colour(slide):
-    initialise()
+    initialise(fields=False)
     found = {}
     with open_footage(slide) as footage:
         for cargo in ("corn", "coal"):

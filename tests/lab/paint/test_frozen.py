@@ -22,7 +22,7 @@ DRIFT = 0.4  # m
 
 @pytest.fixture(autouse=True, scope="module")
 def _taichi():
-    initialise()
+    initialise(fields=False)
 
 
 @pytest.fixture(scope="module")

@@ -68,7 +68,7 @@ def runs(tmp_path_factory):
     "what", [pytest.param("tank", marks=pytest.mark.slow), "three", pytest.param("ship", marks=pytest.mark.slow)]
 )
 def test_texts_lie_in_their_boxes_and_none_covers_another_or_the_stage(runs, what):
-    initialise()
+    initialise(fields=False)
     with open_footage(runs[what]) as footage:
         for size in SIZES:
             for wishes in ({}, {"frame": "tank", "inset": "surface", "colour": "displacement"}):
@@ -137,7 +137,7 @@ def test_curves_differ_for_the_colour_blind(name, seen):
 
 
 def test_a_ship_beyond_her_box_is_cut_off_and_else_is_the_same(monkeypatch):
-    initialise()
+    initialise(fields=False)
     sea, theme = Sea(load("ship/capsize-map").resolved), THEMES["light"]
 
     def painted(box):
@@ -163,7 +163,7 @@ def rows_of(picture, colour):
 
 def test_a_capsized_ship_is_upside_down_in_the_picture(tmp_path):
     """Her red bottom is below her deck while she is upright, and above it at 175 degrees."""
-    initialise()
+    initialise(fields=False)
     theme = THEMES["light"]
     with open_footage(recorded(tmp_path, ship=True, turn=np.radians(175.0))) as footage:
         film = Film(choose_beds(footage), choose_look(footage, width=640, height=360, frame="earth"))

@@ -23,7 +23,7 @@ WHITE, BLACK = 255.0, 0.0
 
 @pytest.fixture(autouse=True, scope="module")
 def _taichi():
-    initialise()
+    initialise(fields=False)
 
 
 def painted(discs, colour=BLACK, mark=BLACK, size=(64, 96), edges=None):
@@ -242,7 +242,7 @@ def test_the_picture_does_not_depend_on_the_number_of_threads():
         picture = painted(discs, 120.0, 30.0, (400, 400))
         paint_tank(picture, Camera(900.0, (50.0, 300.0), 0.2), outline, 9.0, (9,) * 3, (99,) * 3)
         pictures.append(picture)
-    initialise()
+    initialise(fields=False)
     assert pictures[0].tobytes() == pictures[1].tobytes()
 
 

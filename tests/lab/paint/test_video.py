@@ -74,7 +74,7 @@ def four_beds(tmp_path_factory):
 
 def pictures_of(recording, frames, world=None, **wishes):
     """Pictures of some frames of a recording."""
-    initialise()
+    initialise(fields=False)
     with open_footage(recording) as footage:
         film = Film(choose_beds(footage, world), choose_look(footage, **wishes))
         return [film.picture(frame).astype(int) for frame in frames]

@@ -25,7 +25,7 @@ SIZE = 300, 480  # pixels
 
 @pytest.fixture(autouse=True, scope="module")
 def _taichi():
-    initialise()
+    initialise(fields=False)
 
 
 def footage(place, outline=None, velocity=0.0, spacing=SPACING, **more):
@@ -237,7 +237,7 @@ def test_the_picture_of_water_does_not_depend_on_the_number_of_threads():
     for threads in (1, 2):
         initialise(threads)
         pictures.append(painted(wave, "pressure", frame=3))
-    initialise()
+    initialise(fields=False)
     assert pictures[0].tobytes() == pictures[1].tobytes()
 
 

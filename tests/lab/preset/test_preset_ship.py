@@ -218,7 +218,7 @@ SHIP = {
 
 def test_the_sea_in_a_picture():
     """Water below the wave that passes, deeper blue farther down, its line on it; the hull stands about the tank."""
-    initialise()
+    initialise(fields=False)
     waves = {"frequency": OMEGA, "amplitude": 0.02, "kind": "regular"}
     sea = Sea(from_table({**preset(), "ship": SHIP, "waves": waves}))
     assert sea.hull.min(axis=0) == pytest.approx([-0.17, -0.02])

@@ -114,7 +114,7 @@ def test_figures_mark_the_loss(flooded):
 
 def test_the_last_seconds_of_the_video_show_the_loss(flooded, tmp_path):
     """Across the foot of the picture from then on, and the last one stays."""
-    initialise()
+    initialise(fields=False)
     with open_footage(flooded) as footage:
         look = choose_look(footage, width=640, height=360)
         film = Film(choose_beds(footage), look)

@@ -99,7 +99,7 @@ def test_the_summary_says_how_soft_the_air_is(cup):
 @pytest.mark.slow
 def test_pictures_show_the_air_where_water_is_not(cup):
     """By its pressure in colours, while water looks like water; where water alone is asked for, air is left out."""
-    initialise()
+    initialise(fields=False)
     with open_footage(cup.parent / "run") as footage:
         beds = choose_beds(footage)
         airy, plain, pressed = (

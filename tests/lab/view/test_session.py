@@ -46,7 +46,7 @@ class NoProcess:
 @pytest.fixture
 def opened(monkeypatch, tmp_path):
     """A session whose experiment is played by the test: the session, the other end of its pipe, the scene's places."""
-    initialise()
+    initialise(fields=False)
     pipes = []
 
     def begin(name, overrides, folder):

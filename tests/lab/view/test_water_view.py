@@ -42,7 +42,7 @@ def preset(tmp_path):
 @pytest.fixture
 def opened(monkeypatch, tmp_path, preset):
     """A session whose experiment is played by the test, the other end of its pipe, and the particles at rest."""
-    initialise()
+    initialise(fields=False)
     here, there = Pipe()
     gone = SimpleNamespace(is_alive=lambda: False, join=lambda _: None, terminate=lambda: None)
     monkeypatch.setattr(sessions, "begin", lambda *_: (gone, here))

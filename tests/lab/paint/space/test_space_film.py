@@ -21,7 +21,7 @@ SMALL = {"width": 640, "height": 360}
 
 @pytest.fixture(autouse=True, scope="module")
 def _taichi():
-    initialise()
+    initialise(fields=False)
 
 
 @pytest.fixture(scope="module")

@@ -26,7 +26,7 @@ BOX = np.array([(-0.15, 0.0), (0.15, 0.0), (0.15, 0.2), (-0.15, 0.2)])
 
 @pytest.fixture(autouse=True, scope="module")
 def _taichi():
-    initialise()
+    initialise(fields=False)
 
 
 def ahead(scale=100.0, distance=1.0, azimuth=0.0, elevation=0.0):
@@ -263,5 +263,5 @@ def test_the_picture_does_not_depend_on_the_number_of_threads():
         picture = np.full((*SIZE, 3), 240, dtype=np.uint8)
         paint_space(picture, camera, place, np.full(800, 0.006), paints, box, SKIN)
         pictures.append(picture)
-    initialise()
+    initialise(fields=False)
     np.testing.assert_array_equal(*pictures)
