@@ -2,6 +2,7 @@
 
 import os
 import platform
+from functools import cache
 from importlib import metadata
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,12 @@ PACKAGES = ("taichi", "numpy", "scipy", "h5py")
 
 def versions() -> dict[str, str]:
     """Versions of the lab, of Python and of the packages that the results depend on, by name."""
-    found = {"cargo-shift-lab": __version__, "python": platform.python_version()}
+    return {"cargo-shift-lab": __version__, "python": platform.python_version(), **_of_packages()}
+
+
+@cache
+def _of_packages() -> dict[str, str]:
+    found = {}
     for package in PACKAGES:
         try:
             found[package] = metadata.version(package)

@@ -114,6 +114,7 @@ def test_a_strained_drop_becomes_the_ellipse_of_theory(strained):
     np.testing.assert_allclose(found, [a, b], rtol=0.02)
 
 
+@pytest.mark.slow  # that water moves as theory says `tests/lab/studies/test_wave_tank.py` asks for
 def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory(strained):
     """Small strains under −Ω² r: the axes swing at √2 Ω (Monaghan & Rafiee 2013), to 2 %."""
     scene = drop(0.2, pull=PULL)

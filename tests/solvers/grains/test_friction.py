@@ -27,7 +27,7 @@ OUTLINE = np.array(
     ]
 )
 SPEED = 0.2
-SLOW = ("none", "cundall-strack", "coulomb", "viscous")  # laws whose code the others have in common
+SLOW = ("none", "cundall-strack", "coulomb", "viscous", "haff-werner")  # laws whose code the others have in common
 LAWS = [pytest.param(law, marks=pytest.mark.slow if law in SLOW else ()) for law in TANGENTIAL]
 
 
