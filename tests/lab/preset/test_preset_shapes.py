@@ -303,6 +303,7 @@ def test_a_film_of_round_outlines_is_one_of_discs(tmp_path):
     np.testing.assert_allclose(there, here, atol=3)
 
 
+@pytest.mark.slow  # each of them is painted above, and grids in `tests/lab/paint/test_video.py`
 def test_discs_and_outlines_are_filmed_side_by_side(tmp_path):
     shown = {"discs": {}, "two": TWO}
     for name, shapes in shown.items():

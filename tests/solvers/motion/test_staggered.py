@@ -96,6 +96,7 @@ def test_light_water_lets_10_and_5_ms_agree():
         assert errors[1] < last
 
 
+@pytest.mark.slow
 def test_an_even_average_lengthens_periods_as_predicted(monkeypatch):
     """Without water, steps of 10 and 5 ms part as `elongation` says; those of β = 1/12 by fifteen times less."""
     monkeypatch.setattr(line, "CARRIED", 0.0)
