@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, get_args, get_origin
+from typing import Any
 
 from hypothesis import strategies as st
 
@@ -69,11 +69,10 @@ def _of_kind(taken: Taken) -> st.SearchStrategy:
     if taken.below:
         inner = tables(taken.below)
         return inner if taken.table else st.dictionaries(st.sampled_from(["gate", "b-1"]), inner, max_size=2)
-    if get_origin(taken.kind) is tuple:
-        parts = get_args(taken.kind)
-        if parts[-1] is Ellipsis:
-            return st.lists(values(taken.item(parts[0])), max_size=5)
-        return st.tuples(*(values(taken.item(part)) for part in parts)).map(list)
+    if taken.items:
+        if taken.many:
+            return st.lists(values(taken.items[0]), max_size=5)
+        return st.tuples(*map(values, taken.items)).map(list)
     if taken.kind is float:
         return _number(taken)
     limits = taken.interval
