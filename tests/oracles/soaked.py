@@ -39,19 +39,38 @@ def soaked(place: np.ndarray, width: float, height: float, level: float, count: 
     return Simulation(scene, place, threads=1, arch="cpu")
 
 
-def di_felice(speed: float, porosity: float, density: float = 1000.0, viscosity: float = 1e-3) -> float:
+def di_felice(speed: float, porosity: float, size: float = DIAMETER) -> float:
     """The drag of Di Felice (1994) per volume of grains and speed, kg/(m³ s), as the law is usually written."""
-    reynolds = density * DIAMETER * porosity * speed / viscosity
+    density, viscosity = 1000.0, 1e-3
+    reynolds = density * size * porosity * speed / viscosity
     coefficient = (0.63 + 4.8 / np.sqrt(reynolds)) ** 2
     power = 3.7 - 0.65 * np.exp(-0.5 * (1.5 - np.log10(reynolds)) ** 2)
-    force = coefficient * np.pi / 8.0 * density * DIAMETER**2 * (porosity * speed) ** 2 * porosity**-power
-    return force / (np.pi / 6.0 * DIAMETER**3) / speed
+    force = coefficient * np.pi / 8.0 * density * size**2 * (porosity * speed) ** 2 * porosity**-power
+    return force / (np.pi / 6.0 * size**3) / speed
 
 
-def speed_between(driven: float, porosity: float) -> float:
+def speed_between(driven: float, porosity: float, size: float = DIAMETER) -> float:
     """The speed (m/s) between water and grains at which drag balances a force per volume of grains (N/m³)."""
     low, high = 1e-6, 10.0
     for _ in range(100):
         middle = np.sqrt(low * high)
-        low, high = (middle, high) if di_felice(middle, porosity) * middle < driven else (low, middle)
+        low, high = (middle, high) if di_felice(middle, porosity, size) * middle < driven else (low, middle)
     return low
+
+
+def fixed_bed(width: float, height: float, size: float, share: float) -> np.ndarray:
+    """Fixed grains (n, 3): y, z, radius in m, of a `size` (m) that fill a share of a tank, as a shaken crystal."""
+    apart = size * np.sqrt(np.pi / (2.0 * np.sqrt(3.0) * share))
+    columns = round(width / apart)
+    apart = width / columns
+    random, lines = np.random.default_rng(1), int((height - 0.5 * size) / (0.5 * np.sqrt(3.0) * apart)) + 1
+    place = np.array(
+        [
+            [(k + 0.25 + 0.5 * (line % 2)) * apart - 0.5 * width, 0.5 * size + line * 0.5 * np.sqrt(3.0) * apart]
+            for line in range(lines)
+            for k in range(columns)
+        ]
+    )
+    place += random.uniform(-0.15, 0.15, place.shape) * (apart - 0.8 * size)
+    place[:, 0] = (place[:, 0] + 0.5 * width) % width - 0.5 * width
+    return np.column_stack([place, np.full(len(place), 0.5 * size)])

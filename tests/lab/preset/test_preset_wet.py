@@ -29,10 +29,13 @@ WET = "wet/sway"
             "ones: take less, or leave it out.",
         ),
         (
-            {"water.periodic": "y"},
-            "water.periodic: water between grains starts level and at rest; give water.depth.",
+            {"water.depth": False, "water.radius": "20 mm", "water.centre": ["0 mm", "80 mm"]},
+            "water.radius: water between grains starts level and at rest; give water.depth.",
         ),
-        ({"contact.cohesion": "bridge"}, "contact.cohesion: grains in water are not computed with bridges yet; "),
+        (
+            {"contact.cohesion": "bridge", "material.bridge_volume": "0.01 mm^3"},
+            "contact.cohesion: grains in water are not computed with bridges yet; ",
+        ),
         ({"water.shifting": "delta-plus"}, "water.shifting: grains in water are not computed with shifted particles "),
         ({"air.density": "1.2 kg/m^3"}, "air: grains in water are not computed with air yet; "),
     ],
