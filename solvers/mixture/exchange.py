@@ -8,6 +8,7 @@ import taichi as ti
 from solvers.fluid.lists.order import BINS
 from solvers.fluid.matter import WaterMatter
 from solvers.grains.matter import GrainMatter
+from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
 from solvers.mixture.drag import DRAG
@@ -252,6 +253,8 @@ def make_exchange(scene, context: Context, matters: Sequence[Matter]) -> Exchang
     """What grains and water of a scene (`solvers.scene.Scene`) exchange; None where they do not meet."""
     if scene.mixture is None:
         return None
+    if context.per_particle:
+        raise Unavailable('grains in water are not computed particle by particle; take run.schedule = "per-world".')
     grains, water = matters
     exchange = Exchange(context.arrays, context, scene, grains, water)
     grains.mover.soak(exchange)

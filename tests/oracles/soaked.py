@@ -28,6 +28,7 @@ def soaked(place: np.ndarray, width: float, height: float, level: float, count: 
     drops = particles(1, count)
     drops["volume"][0] = SPACING**2
     of_water = {"sound_speed": 10.0, "alpha": 0.02} | changes.pop("water", {})
+    units = changes.pop("units", 1)
     mixture = Mixture(**{"level": level} | changes.pop("mixture", {}))
     glass = material(density=GLASS)
     scene = scene_of(
@@ -36,7 +37,9 @@ def soaked(place: np.ndarray, width: float, height: float, level: float, count: 
     )  # fmt: skip
     step = scene.time_step()
     scene = scene.holding(replace(scene.fluid, substeps=longest_pace(scene, step)), step=step)
-    return Simulation(scene, place, threads=1, arch="cpu")
+    return Simulation(
+        replace(scene, schedule="per-band" if units > 1 else "per-world"), place, units, arch="cpu", units=units
+    )
 
 
 def di_felice(speed: float, porosity: float, size: float = DIAMETER) -> float:

@@ -79,6 +79,7 @@ def _check_company(preset: Whole) -> None:
         "water.full": (preset.water.full, "in a full tank"),
         "water.model": (preset.water.model != "sph", "in frozen, linear or level water"),
         "inflow": (bool(preset.inflow), "with inflow"),
+        "parts": (bool(preset.parts), "round plates and bodies"),
         "tanks": (bool(preset.tanks), "beside further tanks"),
         "water.shifting": (preset.water.shifting != "none", "with shifted particles"),
         "contact.cohesion": (preset.contact.cohesion != "none", "with bridges"),
