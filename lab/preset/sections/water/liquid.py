@@ -28,6 +28,8 @@ from solvers.fluid.walls.layers import edge_of
 from solvers.ship.water import Water as Sea
 from solvers.tank.outline import moments
 
+# Least α of water between grains: with 0.01 a soaked bed stirs itself, above 1e-6 m g d a grain, with 0.02 it rests
+STILL = 0.02
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
 
@@ -45,6 +47,7 @@ class Wet(Tanked, Protocol):
     run: Run
     liquid: given.Water
     pools: tuple[Pool, ...]
+    wet: bool
 
 
 def distance_of_walls(preset: Wet) -> float | None:
@@ -70,7 +73,7 @@ def liquid(preset: Wet) -> given.Water:
         diffusion=water.diffusion or scheme.diffusion,
         delta=scheme.delta if water.delta is None else water.delta,
         viscosity=water.viscosity or scheme.viscosity,
-        alpha=scheme.alpha if water.alpha is None else water.alpha,
+        alpha=water.alpha if water.alpha is not None else max(scheme.alpha, STILL) if preset.wet else scheme.alpha,
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
         gap=(distance_of_walls(preset) or 0.0) if water.between_walls else 0.0,
