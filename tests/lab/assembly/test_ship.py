@@ -46,6 +46,7 @@ def waterline(preset):
     return x, np.array([np.interp(preset.ship.draught, *row, left=0.0) for row in rows])
 
 
+@pytest.mark.slow
 def test_stiffness_is_that_of_the_whole_waterline(preset, ship, waterline):
     """ρ g A_wp in heave and W GM in roll, with BM of the waterline summed here."""
     x, half = waterline

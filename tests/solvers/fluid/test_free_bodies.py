@@ -40,6 +40,7 @@ def test_what_water_loses_bodies_and_tank_gain(dropped):
     assert abs(run.observe()["body_place"][0, 0, 2]) > 0.05  # rad, else nothing was tried
 
 
+@pytest.mark.slow
 def test_energy_is_kept_between_water_and_body(dropped):
     """Water and body together lose what viscosity, diffusion and wall particles take: 0.1 % of what is exchanged."""
     run, start = dropped

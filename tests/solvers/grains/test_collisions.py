@@ -28,7 +28,7 @@ LAWS = [
     ("linear", "coulomb", "elastic-plastic"),
     ("hysteretic", "viscous", "none"),
 ]
-QUICK = LAWS[2], LAWS[5]
+QUICK = (LAWS[2],)
 OUTLINE = box(0.2, 0.2)
 PLACE = np.array([0.0, 0.1])
 

@@ -60,6 +60,7 @@ def heeled() -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
     return found
 
 
+@pytest.mark.slow
 def test_its_weight_is_at_the_centroid_of_a_level_room(heeled):
     """Force, moment, level and centre to rounding, beside polygons whose area is that of the water."""
     found, levels, marks = heeled
@@ -73,6 +74,7 @@ def test_its_weight_is_at_the_centroid_of_a_level_room(heeled):
         assert turned(marks[w].T, heel)[:, 1].max() < level
 
 
+@pytest.mark.slow
 def test_its_surface_takes_the_moment_of_the_closed_form(heeled):
     """Of the width l, between upright walls, at a small heel beyond frozen water: ρ g l³/12 tan φ, to O(φ²)."""
     weight, upright = DENSITY * GRAVITY * WIDE * DEEP, standing(HOPPER, WIDE * DEEP, 0.0)[1]
@@ -81,6 +83,7 @@ def test_its_surface_takes_the_moment_of_the_closed_form(heeled):
         assert beyond == pytest.approx(DENSITY * GRAVITY * WIDE**3 / 12.0 * np.tan(heel), rel=heel**2)
 
 
+@pytest.mark.slow
 def test_she_moves_as_with_a_point_mass_that_stays_at_the_centroid(heeled):
     """In sway, heave and roll, beside her equations of motion with that mass bolted to her anew at each instant.
 

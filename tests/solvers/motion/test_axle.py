@@ -192,6 +192,7 @@ def wedged():
     return axle, own, moment, {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
+@pytest.mark.slow
 def test_wedged_grains_turn_with_the_tank_as_a_rigid_weight(wedged):
     """The roll of the rigid body with the grains' inertia and weight, to 1 % of the heel: contacts give a little."""
     axle, own, moment, found = wedged
@@ -210,6 +211,7 @@ def test_wedged_grains_turn_with_the_tank_as_a_rigid_weight(wedged):
     assert abs(2.0 * pi * sqrt(inertia / (-G * (axle.moment + moment[1]))) / alone - 1.0) > 0.05  # else nothing tried
 
 
+@pytest.mark.slow
 def test_a_held_load_is_a_rigid_weights(wedged):
     """As the tank is turned by hand the moment about the axle is that of the grains' weight and inertia, to 1e-3."""
     _, own, moment, found = wedged
