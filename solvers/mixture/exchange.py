@@ -48,8 +48,9 @@ class Exchange:
     The drag of a grain counts whole where the nearest particle of water is within a spacing of the bed, Δx/√ε, and not
     at all from 1.5 on.
 
-    Limits: within 2 h of a wall the lift of single grains is off by up to 30 %, their sum is not; no added mass, no
-    lift across the flow, no lubrication; no friction of the slab's end planes.
+    Limits: within 2 h of a plane wall the lift of a single grain is off, by −30 % at the wall and 7 % at h from it (the
+    kernel's integral over W/Γ), their sum is not. No added mass, no lift across the flow, no lubrication, no friction
+    of the slab's end planes.
 
     Units: κ kg/s, u m/s, a m/s², m kg, V_g m³, p Pa.
     """

@@ -17,14 +17,14 @@ LEAST_OPEN = 0.1  # of the share of the kernel within walls: a particle that a w
 class Porosity:
     """ε_i = 1 − Σ_g (V_g/b) W(r_ig)/Γ_i, Γ_i = 1 − Σ_w V_w W(r_iw): kernel's sums over grains and wall particles.
 
-    The kernel is the water's own, over its smoothing length (Robinson, Ramaioli & Luding 2014, eq. 7, without walls).
+    The kernel is the water's own, over its smoothing length (Robinson, Ramaioli & Luding 2014, without walls).
     Each grain's volume V_g is smeared over the thickness b of the slab, so that a bed of φ = 0.84 in the plane has
     ε = 1 − ⅔ φ = 0.44. Where walls cut the kernel off, both sums miss the same share Γ (own derivation).
 
     The mass of a particle is ρ ε V. As ε changes it keeps its mass and its volume, so that the density takes up the
     change: ρ' ε' = ρ ε.
 
-    Limits: grains behind a plate are seen, too. Units: V_g m³, V_w m², W 1/m², b m.
+    Limits: grains behind a plate are seen, too; ε is LEAST at least, Γ LEAST_OPEN. Units: V_g m³, V_w m², W 1/m², b m.
     """
 
     def __init__(self, arrays: State, context: FluidContext, grains: GrainState, bounds, thickness: float):

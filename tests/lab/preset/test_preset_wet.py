@@ -19,6 +19,12 @@ WET = "wet/sway"
             "8 mm.",
         ),
         (
+            {"water.spacing": "auto"},
+            "water.spacing: 2.25 mm is under two grains' diameters; the water is a mean over many grains: take at "
+            "least 8 mm.",
+        ),
+        ({"tank.roughness": "4 mm"}, "tank.roughness: grains in water are not computed over a rough lining yet; "),
+        (
             {"tank.thickness": "3 mm"},
             "tank.thickness: 3 mm is less than the grains' mean diameter; in water the slab is a layer of whole "
             "grains: take at least 4 mm.",

@@ -261,7 +261,7 @@ def test_a_percolated_bed_keeps_level_pressure_and_quiet():
     level, pressure, scatter, speed = np.array(found).T
     head = DENSITY * GRAVITY * np.cos(slope) * deep
     assert np.abs(level - level[0]).max() < 0.1 * 6e-3
-    assert np.abs(pressure - 0.5 * head).max() < 0.01 * head + np.abs(pressure[0] - 0.5 * head)
+    assert np.abs(pressure[1:] - 0.5 * head).max() < 0.01 * head  # from twenty diameters on, when it has come to rest
     assert scatter[2:].max() < 0.02 * head
     driven = seen * DENSITY * GRAVITY * np.sin(slope) / (1.0 - seen)
     assert -speed[1:].mean() == pytest.approx(speed_between(driven, seen, size), rel=0.03)

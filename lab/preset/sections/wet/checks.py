@@ -48,10 +48,11 @@ def check_wet(preset: Whole) -> None:
     for name in ("region", "radius", "flow", "periodic"):
         if getattr(water, name) is not None:
             raise LabError(f"water.{name}: water between grains starts level and at rest; give water.depth.")
-    if water.spacing != "auto" and liquid.spacing(preset) < ROUNDED * COARSEST * preset.mean_diameter:
+    asked = liquid.spacing(preset) if water.spacing == "auto" else water.spacing
+    if liquid.spacing(preset) < ROUNDED * COARSEST * preset.mean_diameter:
         least = show(COARSEST * preset.mean_diameter, "m")
         raise LabError(
-            f"water.spacing: {show(water.spacing, 'm')} is under two grains' diameters; the water is a mean over many "
+            f"water.spacing: {show(asked, 'm')} is under two grains' diameters; the water is a mean over many "
             f"grains: take at least {least}."
         )
     if preset.thickness < preset.mean_diameter * (1.0 - 1e-9):
@@ -73,6 +74,7 @@ def _check_company(preset: Whole) -> None:
         "ship": (preset.ship is not None, "aboard a ship"),
         "axle": (preset.axle is not None, "in a tank on an axle"),
         "tank.along": (preset.axes > 2, "in space"),
+        "tank.roughness": (preset.tank.roughness is not None, "over a rough lining"),
         "shapes": (bool(preset.shapes), "of irregular grains"),
         "air": (preset.air is not None, "with air"),
         "water.between_walls": (preset.water.between_walls, "with friction on the walls before and behind"),
