@@ -69,7 +69,7 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     water = preset.liquid
     if not pool.depth:
         return particles_of_water(0)
-    parts = [part for part in parts_of(preset) if part.tank == pool.number]
+    parts = [part for part in parts_of(preset) if part.tank == pool.number and not part.sieve]
     beside = parts if water.start == "packed" and any(map(is_slanted, parts)) and not water.periodic else []
     if (parts and not beside) or water.periodic:  # a lattice is cut off at bodies and upright plates, or goes on across
         water = replace(water, start="lattice")
@@ -218,11 +218,14 @@ def soaked(scene: Scene) -> Fluid:
 
     How much water that is follows from the bed, once it has settled; the particles then share it evenly.
     """
-    fluid, radius = scene.fluid, scene.grains.radius
-    tank, drops = scene.tanks[scene.hold], fluid.particles[0]
-    discs = float((np.pi * radius**2).sum(axis=1).mean())
-    solid = float((4.0 / 3.0 * np.pi * radius**3).sum(axis=1).mean()) / tank.thickness
-    under_water = min(1.0, drops["volume"].sum() * PACKED / discs)
-    left = max(drops["volume"].sum() - under_water * solid, 0.1 * drops["volume"].sum())
-    count = max(1, round(len(drops) * left / drops["volume"].sum()))
-    return replace(fluid, particles=fluid.particles[:, :count])
+    fluid, there = scene.fluid, int(scene.fluid.present.sum())
+    if not there:  # all of it waits to enter
+        return fluid
+    drops = fluid.particles[0, :there]["volume"].sum()
+    discs = float((np.pi * scene.grains.radius**2).sum(axis=1).mean())
+    solid = float(scene.grains.solid.mean()) / scene.tanks[scene.hold].thickness
+    under_water = min(1.0, drops * PACKED / discs)
+    left = max(drops - under_water * solid, 0.1 * drops)
+    count = max(1, round(there * left / drops))
+    kept = np.concatenate([fluid.particles[:, :count], fluid.particles[:, there:]], axis=1)
+    return replace(fluid, particles=kept, in_tanks=(kept.shape[1],) if fluid.in_tanks else ())

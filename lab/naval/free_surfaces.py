@@ -5,7 +5,8 @@ moment of its free surface about that surface's own middle line and v its volume
 higher by ρ i/Δ (2008 IS Code, part B 3.1, which is of tanks with level surfaces). For a rectangle i = b³ l/12.
 
 Surfaces of water that communicates below them have one middle line together, ∫y² dy − (∫y dy)²/∫dy; those of separate
-puddles have one each.
+puddles have one each. Water no higher than a bed of grains has none: it seeps through the pores. Water over the bed
+has that of its whole surface, as long as it covers the bed.
 """
 
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ import numpy as np
 from lab.preset.schema import Preset
 from lab.preset.sections.tank import Tank
 from lab.preset.sections.water.tanks import outline_of
+from solvers.ship.vessel import Vessel
 
 TOUCH = 1e-9  # of the tank's size: so far below its level the surface is cut, so that corners do not lie in it
 
@@ -38,8 +40,19 @@ def free_surfaces(preset: Preset) -> list[FreeSurface]:
     return [
         _surface(names[pool.number], tanks[pool.number], _outline(preset, pool.number), pool.level, preset)
         for pool in preset.pools
-        if pool.number or not preset.water.full
+        if pool.number or not (preset.water.full or _in_pores(preset))
     ]
+
+
+def taken_by_surfaces(preset: Preset, vessel: Vessel) -> float:
+    """By how much (m) the free surfaces of a ship's tanks lower her GM, Σ ρ i/Δ."""
+    moment = sum(surface.moment for surface in free_surfaces(preset))
+    return moment / (vessel.ship.body.mass * (preset.ship.length or 1.0))
+
+
+def _in_pores(preset: Preset) -> bool:
+    """Whether the water of the first tank stands no higher than the bed of grains there."""
+    return preset.wet and preset.grains.depth is not None and (preset.water.depth or 0.0) <= preset.grains.depth
 
 
 def _outline(preset: Preset, number: int) -> np.ndarray:

@@ -156,7 +156,7 @@ def _ship(preset, simulation: Simulation) -> list[tuple[str, str]]:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
     slab = (preset.thickness, preset.a_metre) if preset.matters else None
-    return describe(preset.ship, simulation.scene.vessels[0], preset.waves, slab, every)
+    return describe(preset, simulation.scene.vessels[0], slab, every)
 
 
 def _tank(preset, scene) -> str:

@@ -13,6 +13,8 @@ from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import over_worlds
 from lab.naval import sheet
 from lab.naval.condition import Condition, condition
+from lab.naval.free_surfaces import taken_by_surfaces
+from lab.preset.schema import Preset
 from lab.preset.sections import ship as ships
 from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import axis_place
@@ -30,15 +32,13 @@ SAME_MASS = 0.02  # by which the bed may weigh more or less than its volume at t
 OF = {"section": "", "strips": "; by strips of her hull", "hull": "; of her hull in space"}
 
 
-def describe(
-    given: ships.Ship, vessel: Vessel, waves: Waves | None, slab: tuple[float, float] | None, every: float
-) -> list[tuple[str, str]]:
-    """Rows on a ship, each a name and a text: balance, roll, forces of the water.
+def describe(preset: Preset, vessel: Vessel, slab: tuple[float, float] | None, every: float) -> list[tuple[str, str]]:
+    """Rows on the ship of a preset, each a name and a text: balance, roll, forces of the water.
 
     slab: thickness (m) of the slab that her cargo is, and how many of them a metre of her carries (1/m); None if her
     hold is empty. every: the step (s) of the water's forces.
     """
-    ship, body = vessel.ship, vessel.ship.body
+    given, waves, ship, body = preset.ship, preset.waves, vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
     height = righting(ship.load.section, body, water) / (body.mass * water.gravity)
     floats = f"{body.mass:.4g} kg/m, GM solid {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
@@ -46,6 +46,9 @@ def describe(
     if slab is not None:
         thick = f"a slab {show(slab[0], 'm')} thick: its load counts {slab[1]:.4g} times a metre"
         rows = [("with her cargo", floats), ("cargo", thick)]
+    if taken := taken_by_surfaces(preset, vessel):
+        fluid = f"GM fluid {show(height - taken, 'm')}, as long as they reach from wall to wall"
+        rows.append(("free surfaces", f"take {show(taken, 'm')} of her GM: {fluid}"))
     if vessel.rest:
         rows.append(("lolls", _lolls(given, vessel)))
     rows += [

@@ -8,7 +8,7 @@ least recently used beds are deleted first. A file that cannot be read counts as
 
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -46,7 +46,8 @@ class Settling:
     """How beds are settled: tank `outline`, kind of surface, residual energy at rest, time `limit` (s).
 
     `settle` false: the grains start where they are placed. `reuse` false: the store is not used. `disc_step` (s): round
-    irregular grains first settle as discs, with this step, and then as they are.
+    irregular grains first settle as discs, with this step, and then as they are. `friction`: that of grains and walls
+    while the grains are poured; None: their own.
     """
 
     outline: tuple[tuple[float, float], ...]
@@ -56,6 +57,7 @@ class Settling:
     settle: bool = True
     reuse: bool = True
     disc_step: float | None = None
+    friction: float | None = None
 
 
 def settling(preset: Preset) -> Settling:
@@ -65,7 +67,9 @@ def settling(preset: Preset) -> Settling:
         return Settling(preset.hold.corners, "", run.rest, run.settle_limit, settle=False)
     outline = tuple(map(tuple, filling_outline(preset).tolist()))
     disc_step = build(_of_discs(preset))[0].step if grains.settled_as == "discs" else None
-    return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settles, grains.reuse_bed, disc_step)
+    friction = 0.0 if grains.surface == "undisturbed" else grains.poured_friction
+    how = grains.surface, run.rest, run.settle_limit, run.settles, grains.reuse_bed, disc_step, friction
+    return Settling(outline, *how)
 
 
 def _of_discs(preset: Preset) -> Preset:
@@ -94,7 +98,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     if how.disc_step:
         simulation.close()
         simulation = start(scene, _settled_as_discs(scene, position, how, start, progress))
-    elif how.surface == "undisturbed" or how.outline != _corners(scene) or scene.hold or scene.mixture:
+    elif how.friction is not None or how.outline != _corners(scene) or scene.hold or scene.mixture:
         simulation.close()
         simulation = start(*_poured(scene, position, how, start, progress))
     try:
@@ -143,15 +147,16 @@ def _poured(
 ) -> tuple[Scene, np.ndarray]:
     """The scene, and where its grains lie (W, n, 2) m once they are poured into a closed tank that stands still.
 
-    Its walls reach as high as the grains. Those of a hull that floats, or in water, are poured without it. An
-    undisturbed bed is poured without friction, which packs it as densely as shaking would, and is then levelled. In the
-    returned scene irregular grains have the angles at which they lie.
+    Its walls reach as high as the grains. Those of a hull that floats, or in water, are poured without it. Without
+    friction they pack as densely as shaking would; an undisturbed bed is then levelled. In the returned scene irregular
+    grains have the angles at which they lie.
     """
     pouring, grains = scene.poured(np.array(how.outline)), scene.grains
     hold = scene.tanks[scene.hold]
-    if how.surface == "undisturbed":
-        smooth = {"grain": _frictionless(grains.grain), "wall": _frictionless(grains.wall)}
-        pouring = pouring.holding(replace(grains, **smooth))
+    if how.friction is not None:
+        changed = {name: _rubbing(getattr(grains, name), how.friction) for name in ("grain", "wall", "others")}
+        unlike = tuple((pair, replace(met, friction=how.friction)) for pair, met in grains.unlike)
+        pouring = pouring.holding(replace(grains, **changed, unlike=unlike))
     simulation = start(pouring, position)
     try:
         _settle(simulation, how, "pouring", progress)
@@ -173,8 +178,9 @@ def _poured(
     return scene, poured
 
 
-def _frictionless(materials) -> tuple[Material, ...]:
-    return tuple(replace(material, friction=0.0) for material in materials)
+def _rubbing(materials: Iterable[Material], friction: float) -> tuple[Material, ...]:
+    """The materials with another coefficient of friction."""
+    return tuple(replace(material, friction=friction) for material in materials)
 
 
 def _corners(scene: Scene) -> tuple[tuple[float, float], ...]:

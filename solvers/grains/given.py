@@ -151,6 +151,11 @@ class Grains(Given):
         return density
 
     @property
+    def solid(self) -> np.ndarray:
+        """Volume (W,) m³ of the grains of each world, as spheres."""
+        return (4.0 / 3.0 * np.pi * self.radius**3).sum(axis=1)
+
+    @property
     def mean_radius(self) -> float:
         """Middle of the range of radii (m)."""
         return 0.5 * sum(self.sizes)

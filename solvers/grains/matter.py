@@ -215,6 +215,11 @@ class GrainMatter(Matter):
         """Renumber the grains in worlds where they have mixed."""
         self.numbering.follow()
 
+    def ease(self, settles: bool) -> None:
+        """A bed in water settles as one of grains of its own size in thin water, where it comes to rest the same."""
+        if self.mover.is_wet:
+            self.mover.water.ease(settles)
+
     def start_clock(self) -> None:
         """The clock starts: angles count from here on."""
         self.grains.count_turns_anew()

@@ -20,6 +20,7 @@ from solvers.tank.context import Context
 from solvers.tank.matter import Matter
 
 NEAR, FAR = 1.0, 1.5  # spacings in the bed from a particle of water: drag on a grain is whole, and none
+THIN = 1.0e-6  # m²/s, kinematic viscosity at most of the liquid out of which a bed settles: that of water
 FEW = 0.05  # of x, below which the means over a step are told by their series
 
 
@@ -72,8 +73,9 @@ class Exchange:
         self.former = own.reals(g.each, *named("former", g.axes))
         self.rate, self.partner, self.share = own.reals(each, "rate", "partner", "share", kept=False)
         density = scene.fluid.water.density
-        numbers = thickness, density, density * mixture.kinematic, 1.0 / mixture.finer
-        self.numbers = own.holding("numbers", np.array(numbers), "number")
+        viscosity = density * mixture.kinematic
+        self.numbers = own.holding("numbers", np.array([thickness, density, viscosity, 1.0 / mixture.finer]), "number")
+        self.own_drag, self.thin = (viscosity, 1.0 / mixture.finer), (min(viscosity, density * THIN), 1.0)
         first, last = water.substeps.first, water.substeps.last
         self.opening = first([Phase(self.porosity.sort), Phase(self.porosity.find, water.units)])
         self.phases = first([Phase(self.gather, self.units)])
@@ -84,6 +86,13 @@ class Exchange:
         for field in self.former:
             field.fill(0.0)
         return self.laying.particles(position)
+
+    def ease(self, settles: bool) -> None:
+        """Let the water drain out of a bed that `settles` as through grains of its own size, and be as thin as water.
+
+        Fine grains or a thick liquid would drain for minutes; the bed at rest is the same.
+        """
+        self.numbers[2], self.numbers[3] = self.thin if settles else self.own_drag
 
     @ti.func
     def gather(self, u, t, kick, dt):

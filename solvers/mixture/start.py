@@ -117,16 +117,21 @@ class Laying:
         self.scene, self.tank = scene, scene.tanks[scene.hold]
 
     def particles(self, position: np.ndarray) -> np.ndarray:
-        """The particles (W, n) of water between grains at `position` (W, n, 2) m. Raises Unavailable if none fits."""
+        """The particles (W, n) of water between grains at `position` (W, n, 2) m; those that wait stay as they are.
+
+        Raises Unavailable if the water does not fit in.
+        """
         grains, fluid, gravity = self.scene.grains, self.scene.fluid, self.scene.gravity
-        found, level = [], self.scene.mixture.level
+        found, level, there = [], self.scene.mixture.level, int(fluid.present.sum())
+        if not there:
+            return fluid.particles
         for places, radius, drops in zip(position, grains.radius, fluid.particles, strict=True):
             fixed = grains.fixed[:, [0, 1, -1]]
             whole, size = np.concatenate([places, fixed[:, :2]]), np.concatenate([radius, fixed[:, 2]])
             bed = porosity_map(whole, 4.0 / 3.0 * np.pi * size**3 / self.tank.thickness, self.tank.outline, fluid.water)
-            amount = drops["volume"].sum() if level is None else bed.area_below(level)
+            amount = drops["volume"][:there].sum() if level is None else bed.area_below(level)
             try:
-                found.append(laid(bed, len(drops), amount, fluid.water, gravity))
+                found.append(np.concatenate([laid(bed, there, amount, fluid.water, gravity), drops[there:]]))
             except ValueError as error:
                 raise Unavailable(f"water: {error}; take less of it, or a larger tank.") from None
         return np.stack(found)

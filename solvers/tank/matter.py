@@ -62,6 +62,9 @@ class Matter:
     def keep_order(self) -> None:
         """Renumber the particles of worlds where they have mixed."""
 
+    def ease(self, settles: bool) -> None:
+        """Leave out, while it `settles`, what only makes it come to rest more slowly."""
+
     def start_clock(self) -> None:
         """Note that the clock starts now."""
 

@@ -49,6 +49,7 @@ class Part:
     tank: ClassVar = 0
     free: ClassVar = None
     hull: ClassVar = None
+    sieve: ClassVar = False
 
     @property
     def way(self) -> float:
@@ -115,7 +116,8 @@ class Body(Part):
 
     Its `motions` are those that a tank may have (`solvers.motion`), in the tank's frame, from the drawn place on; they
     follow its `move`. They begin with the tank's own motion. `tank` is the number of the tank in which it stands. One
-    that is `free` moves as what pushes it says; it has no motions. A solid one with a `hull` is hollow.
+    that is `free` moves as what pushes it says; it has no motions. A solid one with a `hull` is hollow. A `sieve` holds
+    grains back and lets water pass.
     """
 
     closed: bool = False
@@ -123,6 +125,7 @@ class Body(Part):
     tank: int = 0
     free: Free | None = None
     hull: Hull | None = None
+    sieve: bool = False
 
     def fastest(self) -> float:
         """Bound on the speed (m/s) of its corners."""

@@ -13,6 +13,8 @@ LOOK = 0.01  # s, between two looks
 def settle(run, rest: float, limit: float, tell: Callable[[float], None]) -> bool:
     """Let the matters of a `solvers.simulation.Simulation` settle, as its `settle` says."""
     run.origin = AT_REST
+    for matter in run.matters.values():
+        matter.ease(True)
     look = run.exchange_interval * max(1, round(LOOK / (run.exchange_interval * run.dt)))
     quiet = np.zeros(run.scene.worlds, dtype=int)
     while np.any(quiet < 2) and run.steps * run.dt < limit:
@@ -22,5 +24,7 @@ def settle(run, rest: float, limit: float, tell: Callable[[float], None]) -> boo
         quiet = np.where(calm, quiet + 1, 0)
         run.clock.status.from_numpy(np.where(quiet < 2, watch.RUNNING, watch.WAITING).astype(np.int32))
         tell(run.steps * run.dt)
+    for matter in run.matters.values():
+        matter.ease(False)
     run.start_clock()
     return bool(np.all(quiet >= 2))

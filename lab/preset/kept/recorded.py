@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from lab.preset import formats
 from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
-from lab.preset.kept.content import INSIDE, KINDS_OF_GAUGES, MATTERS, Content, Gauge
+from lab.preset.kept.content import FIRST, INSIDE, KINDS_OF_GAUGES, MATTERS, Content, Gauge
 from lab.preset.kept.read import keys
 from solvers.machine.quantity import PLANE, SPACE
 from solvers.tank.solids.solid import ENDS, MESH, edges_named
@@ -32,6 +32,7 @@ def content(table: object) -> Content:
     openings = (f"{name}.{opening}" for name, part in parts for opening in part.get("openings") or ())
     water, grains = kept.get("water") or {}, kept.get("grains") or {}
     poured = any(water.get(name) is not None for name in ("depth", "region", "radius"))
+    poured = poured or any(inlet.get("room", FIRST) == FIRST for inlet in kept.get("inflow", {}).values())
     wet = has["water"] and has["grains"] and poured and grains.get("room") is None
     own = has["material"], has["ship"], has["axle"], gauges
     room = bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ()))

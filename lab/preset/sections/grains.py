@@ -91,6 +91,10 @@ class Grains:
             "omega_z, too; kind: 0 for [material], then the numbers of [kinds]."
         ),
     ] = None
+    poured_friction: Annotated[
+        Annotated[float, Interval(ge=0, le=10)] | None,
+        Doc("Friction of all surfaces while the grains are poured: 0 packs them densely, 1 loosely; else their own."),
+    ] = None
     reuse_bed: Annotated[bool, Doc("Keep settled beds, and reuse them.")] = True
     settled_as: Annotated[
         Literal["outlines", "discs"], Doc("Whether round outlines settle as discs, into the bed that these would have.")
@@ -117,6 +121,11 @@ def check_grains(grains: Grains, shaped: bool, settle: bool) -> None:
     if grains.surface != "slightly-disturbed" and not settle:
         raise LabError(
             f"grains.surface: a bed is {grains.surface} by how it settles; leave run.settle true, with gravity."
+        )
+    if grains.poured_friction is not None and (not settle or grains.bed is not None or grains.surface == "undisturbed"):
+        raise LabError(
+            'grains.poured_friction: goes with grains that are poured, and an "undisturbed" surface has none; leave it '
+            "out, or grains.surface and grains.bed."
         )
     if grains.bed is not None:
         if grains.surface != "slightly-disturbed":

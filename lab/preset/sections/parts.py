@@ -53,11 +53,12 @@ class PartGroup(solved.Part):
         """The part as the solver takes it, in the tank of this number, of a `thickness` (m)."""
         motions, move = tuple(self.moves.values()), (self.move, self.start, self.speed, self.acceleration)
         free, hull = bodies.freedom(self, thickness), bodies.hull_of(self)
-        return solved.Body(self.points, *move, self.closed, motions, tank, free, hull)
+        return solved.Body(self.points, *move, self.closed, motions, tank, free, hull, self.sieve)
 
 
 WHERE = "The tank in which it stands, by its name in [tanks]; by default it is [tank]."
 KEYS = [("closed", Annotated[bool, Doc("Whether it is a solid body.")], False)]
+KEYS.append(("sieve", Annotated[bool, Doc("Whether it holds grains back and lets water pass.")], False))
 KEYS.append(("tank", Annotated[str | None, Doc(WHERE)], None))
 KEYS += bodies.KEYS
 KEYS += [(name, Annotated[kind | None, Doc(f"Its {name}.")], None) for name, kind in MOTIONS.items()]

@@ -37,7 +37,7 @@ class Bodies:
         parts = pieces.parts
         self.pieces, self.count, self.lanes, self.worlds = pieces, len(parts), lanes, scene.worlds
         self.exact, self.tanks = arrays.exact, [part.tank for part in parts]
-        wet = [scene.fills[tank] > 0 for tank in self.tanks]  # others stand among grains
+        wet = [scene.fills[part.tank] > 0 and not part.sieve for part in parts]  # others meet grains alone
         self.solids, self.reach = Solids(parts, water, lanes, wet), water.reach
         self.rows = len(self.solids.places)
         self.visibility = Visibility(arrays, parts, water, scene, wet)

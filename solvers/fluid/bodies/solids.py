@@ -41,7 +41,7 @@ def prolonging(parts: Sequence[Part], spacing: float) -> np.ndarray:
 
     Also by way of others between them, and each plate itself; no solid body.
     """
-    plates = [not is_solid(part) and len(part.points) == 2 for part in parts]
+    plates = [not is_solid(part) and len(part.points) == 2 and not part.sieve for part in parts]
     found = np.diag(np.array(plates, dtype=bool))
     for k, first in enumerate(parts):
         for m, second in enumerate(parts[:k]):

@@ -29,6 +29,8 @@ class Inflow:
     at once, and the jet under water, with its momentum, is left out. What finds no place waits for the next step and is
     not lost. Where the level in a room is higher than the sea's the particle nearest to the mouth leaves.
 
+    In a hold of grains its level is that of water with all of them immersed.
+
     The weight and the impact of this water load the ship by her walls, as those of any water. Of the hull outside
     nothing changes: she is buoyant as if closed (added weight), and that the pressure is missing over an opening's area
     is left out. She has sunk when what has entered is more than her reserve buoyancy. Momentum and energy that
@@ -60,7 +62,10 @@ class Inflow:
         self.first = own.holding("first", np.array([0, *accumulate(self.fills)][:-1]), "room", ti.i32)
         self.waited = own.holding("waited", self.waiting, "room", ti.i32)
         self.most = own.holding("most", self.fills, "room", ti.i32)
-        self.still = own.holding("still", fluid.areas(len(tanks)), "world room", exact)  # m², that starts in each tank
+        filled = fluid.areas(len(tanks))  # m², in each tank at the start
+        if scene.mixture:
+            filled[:, scene.hold] += scene.grains.solid / tanks[scene.hold].thickness
+        self.still = own.holding("still", filled, "world room", exact)
         world, inlet, room = Axis("world", worlds), Axis("inlet", self.count), Axis("room", len(tanks))
         self.due, self.rate = own.reals((world, inlet), "due", "rate", kind=exact)
         (self.entered,) = own.integers((world, inlet), "entered")

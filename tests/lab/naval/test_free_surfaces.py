@@ -82,6 +82,13 @@ def test_full_tank_and_frozen_cargo_have_none():
     assert free_surfaces(load(ART, full).resolved) == []
 
 
+def test_water_in_the_pores_of_a_bed_has_none():
+    """Soaked to its surface a bed has none; water over it has that of the hold, ρ b³/12."""
+    assert free_surfaces(load("ship/coal-soaked").resolved) == []
+    (over,) = free_surfaces(load("ship/slurry").resolved)
+    assert over.moment == pytest.approx(1000.0 * 0.3**3 / 12.0, rel=1e-9)
+
+
 @pytest.mark.parametrize("aside", [0.0, 4.0])
 def test_communicating_surfaces_have_one_middle_line(aside):
     """Wings of 1 and 2 m: Σ(y₂³ − y₁³)/3 less A ȳ², wherever the tank stands."""

@@ -25,7 +25,6 @@ REFUSED = {
         "inflow.hatch.points": [["-110 mm", "150 mm"], ["0 mm", "140 mm"]]
     },
     'inflow.hatch.room: there is no tank "hold"; take tank or room': {"inflow.hatch.room": "hold"},
-    "inflow.hatch.room: this hold has grains": {"inflow.hatch.room": "tank"},
     "inflow.hatch.length: it is longer than the room, 500 mm": {"inflow.hatch.length": "0.6 m"},
     'inflow: "frozen" water keeps its volume; take water.model = "sph", particles, or "level"': {
         "water.model": "frozen"

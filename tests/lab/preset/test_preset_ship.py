@@ -196,8 +196,8 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(about):
 
 def test_texts_on_a_ship(barge):
     said, vessel = barge
-    given = Ship(**{**vars(said.ship), "scale": 100.0})
-    rows = dict(describe(given, vessel, said.waves, (0.003, 1.0 / 0.003), 1e-3))
+    said = replace(said, ship=Ship(**{**vars(said.ship), "scale": 100.0}))
+    rows = dict(describe(said, vessel, (0.003, 1.0 / 0.003), 1e-3))
     assert "GM solid 49.98 mm" in rows["with her cargo"] and rows["capsized"] == "beyond 90 deg"
     assert "333.3 times a metre" in rows["cargo"]
     assert rows["her cargo's repose"].startswith("25 deg")

@@ -43,6 +43,11 @@ WET = "wet/sway"
             "contact.cohesion: grains in water are not computed with bridges yet; ",
         ),
         ({"water.shifting": "delta-plus"}, "water.shifting: grains in water are not computed with shifted particles "),
+        (
+            {"parts.gate.points": [["0 mm", "0 mm"], ["0 mm", "160 mm"]]},
+            "parts.gate: grains in water are not computed round what holds water back; set parts.gate.sieve = true for "
+            "a plate that holds grains alone, or leave it out.",
+        ),
         ({"air.density": "1.2 kg/m^3"}, "air: grains in water are not computed with air yet; "),
     ],
 )
@@ -59,6 +64,28 @@ def test_keys_of_wet_cargo_need_both(name, key):
     """A bed without water has no true size, and water without grains no drag."""
     with pytest.raises(LabError, match=rf"^{key}: goes with "):
         load(name, {key: "1 mm" if key.endswith("size") else "ergun"})
+
+
+def test_a_sieve_goes_with_grains_in_water():
+    """A plate in water alone holds the water, or it is none."""
+    gate = {"parts.gate.points": [["0 mm", "0 mm"], ["0 mm", "160 mm"]], "parts.gate.sieve": True}
+    with pytest.raises(LabError, match=r"^parts\.gate\.sieve: goes with grains in the water of their tank; "):
+        load("sloshing/quick", gate)
+    scene, _ = build(load(WET, gate).resolved)
+    assert scene.parts[0].sieve
+
+
+def test_a_ship_in_her_own_weight_alone_is_refused():
+    """The water of the preset is not yet that which the bed leaves, so that her mass is not known."""
+    with pytest.raises(LabError, match=r"^ship\.bare: grains in water are not computed in a ship whose centre "):
+        load("ship/slurry", {"ship.bare": True, "ship.roll_period": False, "ship.gyradius": "130 mm"})
+
+
+def test_water_that_enters_a_hold_of_grains_waits_at_first():
+    """The hold has room for as many particles as would fill it without grains, and none is in it at the start."""
+    scene, _ = build(load("ship/coal-hatch").resolved)
+    assert scene.mixture and not scene.fluid.present.any()
+    assert scene.fluid.count == scene.fluid.waiting[0]
 
 
 def test_the_water_between_the_grains_is_as_much_as_they_leave():

@@ -7,6 +7,7 @@ from typing import Annotated, Protocol
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.kept.content import FIRST
 from lab.preset.outline import TOUCHING, depth_inside
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.tank import FurtherTank, Tank
@@ -15,7 +16,6 @@ from lab.preset.units import show
 from solvers.fluid.inflow import inlet as solved
 from solvers.machine.marks import Doc, Interval, Unit
 
-FIRST = "tank"  # the name of the first tank
 ENTERS = "sph", "level"  # models of water that may enter or leave
 
 Ends = Annotated[tuple[tuple[float, float], ...], Unit("m")]
@@ -27,7 +27,7 @@ class Inlet:
     """An opening in the hull of a ship, such as a hatch or a port, that leads to a room, which water enters by it.
 
     The flow is Q = C_d ∫ √(2 g Δh) dA where it is under water. The room is [tank] or one of [tanks]; it may be
-    empty at the start. It must not hold grains, whose holds flood at `ship.openings`.
+    empty at the start, or hold grains, between which the water then flows.
     """
 
     points: Annotated[Ends, Doc("Its two ends in the hull's axes, y and z each.")]
@@ -94,12 +94,6 @@ def _faults(preset: Tanked, inlet: Inlet) -> Iterator[tuple[str, str]]:
     names = [FIRST, *preset.tanks]
     if inlet.room not in names:
         yield "room", f'there is no tank "{inlet.room}"; take {" or ".join(names)}'
-    if inlet.room == FIRST and preset.grains is not None:
-        yield (
-            "room",
-            "this hold has grains, and water among them is not computed; take a tank without, or give the place as "
-            "one of ship.openings, where she floods",
-        )
     corners = preset.ship.corners
     slack, waterline = TOUCHING * float(np.ptp(corners, axis=0).max()), corners[:, 1].min() + preset.ship.draught
     for y, z in inlet.points:

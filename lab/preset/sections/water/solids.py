@@ -34,7 +34,7 @@ def check_solids(preset: liquid.Wet) -> None:
         key = f"parts.{name}"
         if part.history:
             _check_end(preset, part, key)
-        if solved.tank not in wet:
+        if solved.tank not in wet or part.sieve:
             continue
         if part.closed:
             _check_body(part, 2.0 * preset.liquid.reach, key)

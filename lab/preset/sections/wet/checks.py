@@ -3,6 +3,7 @@
 from typing import Protocol
 
 from lab.base.errors import LabError
+from lab.preset.kept.content import FIRST
 from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains
 from lab.preset.sections.ship import Ship
@@ -32,7 +33,8 @@ def is_wet(preset: Whole) -> bool:
     water, grains = preset.water, preset.grains
     if water is None or grains is None or grains.room is not None:
         return False
-    return any(getattr(water, name) is not None for name in ("depth", "region", "radius"))
+    given = any(getattr(water, name) is not None for name in ("depth", "region", "radius"))
+    return given or any(inlet.room == FIRST for inlet in preset.inflow.values())
 
 
 def check_wet(preset: Whole) -> None:
@@ -43,6 +45,8 @@ def check_wet(preset: Whole) -> None:
             raise LabError("grains.true_size: goes with water in the grains' tank; add [water], or leave it out.")
         if water is not None and water.drag is not None:
             raise LabError("water.drag: goes with grains in the water; add [grains], or leave it out.")
+        for name in (name for name, part in preset.parts.items() if part.sieve):
+            raise LabError(f"parts.{name}.sieve: goes with grains in the water of their tank; leave it out.")
         return
     _check_company(preset)
     for name in ("region", "radius", "flow", "periodic"):
@@ -71,7 +75,7 @@ def check_wet(preset: Whole) -> None:
 def _check_company(preset: Whole) -> None:
     """Raise LabError for what cannot be together with grains in water."""
     beside = {
-        "ship": (preset.ship is not None, "aboard a ship"),
+        "ship.bare": (preset.ship is not None and preset.ship.bare, "in a ship whose centre is told without the water"),
         "axle": (preset.axle is not None, "in a tank on an axle"),
         "tank.along": (preset.axes > 2, "in space"),
         "tank.roughness": (preset.tank.roughness is not None, "over a rough lining"),
@@ -80,12 +84,16 @@ def _check_company(preset: Whole) -> None:
         "water.between_walls": (preset.water.between_walls, "with friction on the walls before and behind"),
         "water.full": (preset.water.full, "in a full tank"),
         "water.model": (preset.water.model != "sph", "in frozen, linear or level water"),
-        "inflow": (bool(preset.inflow), "with inflow"),
-        "parts": (bool(preset.parts), "round plates and bodies"),
         "tanks": (bool(preset.tanks), "beside further tanks"),
         "water.shifting": (preset.water.shifting != "none", "with shifted particles"),
         "contact.cohesion": (preset.contact.cohesion != "none", "with bridges"),
     }
+    for name, part in preset.parts.items():
+        if not part.sieve or part.floats:
+            raise LabError(
+                f"parts.{name}: grains in water are not computed round what holds water back; set parts.{name}.sieve = "
+                "true for a plate that holds grains alone, or leave it out."
+            )
     for key, (there, what) in beside.items():
         if there:
             raise LabError(f"{key}: grains in water are not computed {what} yet; leave this out, or the water.")
