@@ -10,7 +10,7 @@ from lab.assembly.collisions import known_collisions
 from lab.assembly.grains import check_laden, check_softness, grain_count, grains_of, rooms_of_bodies
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
-from lab.assembly.water import fluid_of, mixture_of, most_drops, particles, soaked, water_aboard
+from lab.assembly.water import fluid_of, mixture_of, most_drops, particles, soaked_by, water_aboard
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.parts import parts_of
@@ -64,7 +64,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         schedule=preset.run.schedule,
     )
     if scene.mixture:
-        scene.matters = scene.holding(soaked(scene)).matters
+        scene.matters = scene.holding(soaked_by(preset, scene)).matters
     check_laden(preset, scene)
     if preset.grains:
         check_softness(scene)

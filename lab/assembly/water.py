@@ -12,6 +12,7 @@ from lab.preset.sections.water.bodies import depths_of, rooms_of
 from lab.preset.sections.water.inflow import inlets_of
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
 from lab.preset.sections.water.tanks import Pool, outline_at
+from lab.preset.sections.wet.states import share_of, state
 from solvers.fluid.given import Fluid, Water
 from solvers.fluid.given import particles as particles_of_water
 from solvers.fluid.phases.reduced_pressure import ReducedPressure
@@ -210,7 +211,30 @@ def mixture_of(preset: Preset) -> Mixture | None:
         return None
     finer = preset.mean_diameter / preset.grains.true_size if preset.grains.true_size else 1.0
     drag = preset.water.drag or Mixture.drag
-    return Mixture(drag, preset.water.kinematic_viscosity or VISCOSITY, finer, float(bounds(preset)[1]))
+    level = None if share_of(preset.water) else float(bounds(preset)[1])
+    given = preset.water.kinematic_viscosity or VISCOSITY, finer, level, preset.water.saturation
+    return Mixture(drag, *given)
+
+
+def soaked_by(preset: Preset, scene: Scene) -> Fluid:
+    """The fluid of a scene with the water of a preset's moisture, whose particles share it evenly in each world.
+
+    Its mass is m_w = M/(1 − M) m_g. Of a saturation, or a depth, their number alone is known before the bed has
+    settled.
+    """
+    fluid, moisture = scene.fluid, preset.water.moisture
+    if moisture is None and preset.water.saturation is None:
+        return soaked(scene)
+    tank, wet = scene.tanks[scene.hold], state(preset)
+    heavy = (4.0 / 3.0 * np.pi * scene.grains.radius**3 * scene.grains.density).sum(axis=1)
+    mass = heavy.mean() * wet.moisture / (1.0 - wet.moisture) * np.ones(scene.worlds)
+    if moisture is not None:
+        mass = heavy * moisture / (1.0 - moisture)
+    area = mass / (fluid.water.density * tank.thickness)
+    count = max(1, round(float(area.mean()) / fluid.water.spacing**2))
+    found = fluid.particles[:, :count].copy()
+    found["volume"] = area[:, None] / found.shape[1]
+    return replace(fluid, particles=found)
 
 
 def soaked(scene: Scene) -> Fluid:

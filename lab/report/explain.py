@@ -15,6 +15,7 @@ from lab.preset.schema import Preset
 from lab.preset.units import show
 from lab.report import coarse, free, grains, water
 from lab.report.ship import describe
+from lab.report.wet import bed
 from solvers.fluid.timestep import steps_of_water
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.motion.frame import is_turn
@@ -54,7 +55,6 @@ SCHEDULES = {
 
 KEYS_WIDTH = 34  # characters of a key and its value, before its sentence
 
-
 Sections = list[tuple[str, list[tuple[str, str]]]]
 
 
@@ -88,6 +88,7 @@ def sections(loaded: LoadedPreset) -> Sections:
     accuracy = grains.accuracy(preset) if preset.grains else []
     found = [
         ("Scene", _scene(preset, scene)),
+        ("Wet bed", bed.described(preset, scene)),
         ("Ship", _ship(preset, simulation)),
         ("Coarse grains", coarse.described(preset) if preset.grains else []),
         ("Axle", free.described(preset) if preset.axle else []),

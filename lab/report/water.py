@@ -6,7 +6,6 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from lab.assembly.scene import build
-from lab.assembly.water import PACKED
 from lab.base.errors import LabError
 from lab.measures.water_residual import residual
 from lab.preset.accuracy import LEVELS
@@ -112,25 +111,6 @@ def models(scene: Scene) -> Rows:
         *([("surface", surface(water.air))] if water.air else []),
         ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
         *([("end walls, before and behind", f"{show(water.gap, 'm')} apart")] if water.gap else []),
-        *(between_grains(scene) if scene.mixture else []),
-    ]
-
-
-def between_grains(scene: Scene) -> Rows:
-    """The law of drag between grains and water, and what it makes of the bed."""
-    mixture, radius, gravity = scene.mixture, scene.grains.mean_radius, scene.gravity
-    size, porosity = 2.0 * radius / mixture.finer, 1.0 - 4.0 / 3.0 * PACKED * radius / scene.tanks[scene.hold].thickness
-    permeability = porosity**3 * size**2 / (180.0 * (1.0 - porosity) ** 2)  # Carman (1937)
-    density = float(np.mean(scene.grains.density)) / scene.fluid.water.density
-    archimedes = gravity * size**3 * abs(density - 1.0) / mixture.kinematic**2
-    return [
-        ("drag", f"{mixture.drag}, on grains of {show(size, 'm')}, at a viscosity of {mixture.kinematic:g} m²/s"),
-        (
-            "wet bed",
-            f"porosity {porosity:.2f} where it fills {PACKED:g} of the plane, permeability {permeability:.2g} m² "
-            f"(Carman): slow water sinks through it at {show(permeability * gravity / mixture.kinematic, 'm/s')}",
-        ),
-        ("Archimedes number", f"{archimedes:.3g}: gravity over viscosity, of a grain"),
     ]
 
 

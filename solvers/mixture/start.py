@@ -8,6 +8,8 @@ from solvers.fluid.given import Water, particles
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.start.rest import hydrostatic_deviation
 from solvers.machine.errors import Unavailable
+from solvers.mixture.bed import pores
+from solvers.mixture.given import Mixture
 from solvers.tank.outline import inside
 
 FINE = 0.25  # of a smoothing length: the grid on which the porosity is found
@@ -110,6 +112,18 @@ def laid(bed: PorosityMap, count: int, amount: float, water: Water, gravity: flo
     return found
 
 
+def amount(
+    mixture: Mixture, bed: PorosityMap, outline: np.ndarray, position: np.ndarray, solid: np.ndarray, given: float
+) -> float:
+    """The area (m²) of the water of a mixture in a tank, between grains at `position` (n, 2) m.
+
+    `solid` (n,) m²: the areas that the grains take in the plane; `given` (m²): of the fluid's own particles.
+    """
+    if mixture.level is not None:
+        return bed.area_below(mixture.level)
+    return given if mixture.saturation is None else mixture.saturation * pores(outline, position, solid)
+
+
 class Laying:
     """How the water of a scene (`solvers.scene.Scene`) is laid between its grains, wherever these are."""
 
@@ -122,16 +136,17 @@ class Laying:
         Raises Unavailable if the water does not fit in.
         """
         grains, fluid, gravity = self.scene.grains, self.scene.fluid, self.scene.gravity
-        found, level, there = [], self.scene.mixture.level, int(fluid.present.sum())
+        found, outline, mixture, there = [], self.tank.outline, self.scene.mixture, int(fluid.present.sum())
         if not there:
             return fluid.particles
         for places, radius, drops in zip(position, grains.radius, fluid.particles, strict=True):
             fixed = grains.fixed[:, [0, 1, -1]]
             whole, size = np.concatenate([places, fixed[:, :2]]), np.concatenate([radius, fixed[:, 2]])
-            bed = porosity_map(whole, 4.0 / 3.0 * np.pi * size**3 / self.tank.thickness, self.tank.outline, fluid.water)
-            amount = drops["volume"][:there].sum() if level is None else bed.area_below(level)
+            solid = 4.0 / 3.0 * np.pi * size**3 / self.tank.thickness
+            bed = porosity_map(whole, solid, outline, fluid.water)
+            wet = amount(mixture, bed, outline, whole, solid, drops["volume"][:there].sum())
             try:
-                found.append(np.concatenate([laid(bed, there, amount, fluid.water, gravity), drops[there:]]))
+                found.append(np.concatenate([laid(bed, there, wet, fluid.water, gravity), drops[there:]]))
             except ValueError as error:
                 raise Unavailable(f"water: {error}; take less of it, or a larger tank.") from None
         return np.stack(found)

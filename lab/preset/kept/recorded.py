@@ -31,7 +31,7 @@ def content(table: object) -> Content:
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))
     openings = (f"{name}.{opening}" for name, part in parts for opening in part.get("openings") or ())
     water, grains = kept.get("water") or {}, kept.get("grains") or {}
-    poured = any(water.get(name) is not None for name in ("depth", "region", "radius"))
+    poured = any(water.get(name) is not None for name in ("depth", "region", "radius", "moisture", "saturation"))
     poured = poured or any(inlet.get("room", FIRST) == FIRST for inlet in kept.get("inflow", {}).values())
     wet = has["water"] and has["grains"] and poured and grains.get("room") is None
     own = has["material"], has["ship"], has["axle"], gauges

@@ -12,6 +12,7 @@ from lab.preset.sections.water import liquid
 from lab.preset.sections.water.flow_checks import check_flow, check_periodic
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.wet.states import SHARES, check_share, share_of
 from lab.preset.units import needed, show
 from solvers.fluid.viscosity import LAMINAR
 
@@ -41,6 +42,9 @@ def check_water(preset: Whole) -> None:
     _check_given(preset)
     if water.depth is not None:
         _check_depth(water, tank)
+    elif share_of(water):
+        asked = liquid.spacing(preset) if water.spacing == "auto" else water.spacing  # not yet rounded to the depth
+        check_share(preset, 2.0 * preset.liquid.smoothing * asked)
     else:
         _check_shape(water, tank)
     _check_gauges(preset.gauges, tank)
@@ -102,7 +106,7 @@ def _check_level_water(preset: Whole) -> None:
 
 def given_of(water: Water) -> dict[str, object]:
     """What says where the water of the first tank is, by the keys that are given."""
-    names = "depth", "region", "radius"
+    names = "depth", "region", "radius", *SHARES
     return {name: getattr(water, name) for name in names if getattr(water, name) is not None}
 
 
@@ -110,6 +114,13 @@ def _check_given(preset: Whole) -> None:
     """Raise LabError unless it is said where the water is."""
     given, elsewhere = given_of(preset.water), any(tank.depth is not None for tank in preset.tanks.values())
     elsewhere = elsewhere or bool(preset.inflow)
+    share = share_of(preset.water)
+    if share and (preset.grains is None or preset.grains.room is not None):
+        raise LabError(f"water.{share[0]}: goes with grains in the water's tank; add [grains], or give water.depth.")
+    if share and len(given) > 1:
+        raise LabError(
+            f"water.{share[0]}: give exactly one of depth, moisture and saturation (got {' and '.join(given)})."
+        )
     if len(given) > 1 or not (given or elsewhere):
         got = " and ".join(given) or "none"
         raise LabError(f"water.depth: give exactly one of depth, region and radius (got {got}).")

@@ -37,6 +37,14 @@ class Water:
         Usual(0.02, 1.0, "mm"),
         Doc("Depth of the water over the tank's lowest point; or give `region`. Further tanks have their own."),
     ] = None
+    moisture: Annotated[
+        Annotated[float, Interval(gt=0, lt=1)] | None,
+        Doc("Share of the mass of grains and water together that is water, in place of `depth`."),
+    ] = None
+    saturation: Annotated[
+        Annotated[float, Interval(gt=0, le=10)] | None,
+        Doc("Share of the settled bed's pores that the water fills, in place of `depth`; over 1 it stands on the bed."),
+    ] = None
     model: Annotated[
         Literal["sph", "linear", "frozen", "level"],
         Doc(

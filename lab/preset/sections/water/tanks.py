@@ -8,6 +8,7 @@ from lab.base.errors import LabError
 from lab.preset.outline import stands_out
 from lab.preset.sections.tank import FurtherTank, check_tank
 from lab.preset.sections.water.inflow import Tanked, check_inflow, rooms_with_inflow
+from lab.preset.sections.wet.states import share_of, state
 from lab.preset.units import show
 from solvers.fluid.start.packing import area_of, below
 from solvers.tank import tank as solved
@@ -52,14 +53,20 @@ def pools(preset: Tanked) -> tuple[Pool, ...]:
         return ()
     if water.shape is not None:
         found.append(Pool(0, water.shape, float(water.shape[:, 1].max())))
-    elif water.depth is not None or 0 in entered:
-        found.append(Pool(0, outline, float(outline[:, 1].min()) + (water.depth or 0.0), 0 in entered))
+    elif (deep := depth_of(preset)) is not None or 0 in entered:
+        found.append(Pool(0, outline, float(outline[:, 1].min()) + (deep or 0.0), 0 in entered))
     for number, tank in enumerate(preset.tanks.values(), start=1):
         if tank.depth is not None or number in entered:
             outline = outline_of(preset, tank)
             level = float(outline[:, 1].min()) + (tank.depth or 0.0)
             found.append(Pool(number, outline, level, number in entered))
     return tuple(found)
+
+
+def depth_of(preset: Tanked) -> float | None:
+    """The depth (m) of the first tank's water: as given, or the one expected where its share of wet cargo is given."""
+    wet = share_of(preset.water) and state(preset)
+    return wet.level if wet else preset.water.depth
 
 
 def outline_of(preset: Tanked, tank: FurtherTank) -> np.ndarray:

@@ -8,6 +8,7 @@ from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.water import liquid
+from lab.preset.sections.wet.states import SHARES, state
 from lab.preset.units import show
 
 COARSEST = 2.0  # grains' diameters: the least spacing of water, whose kernel then smooths over four of them
@@ -33,7 +34,7 @@ def is_wet(preset: Whole) -> bool:
     water, grains = preset.water, preset.grains
     if water is None or grains is None or grains.room is not None:
         return False
-    given = any(getattr(water, name) is not None for name in ("depth", "region", "radius"))
+    given = any(getattr(water, name) is not None for name in ("depth", "region", "radius", *SHARES))
     return given or any(inlet.room == FIRST for inlet in preset.inflow.values())
 
 
@@ -51,7 +52,8 @@ def check_wet(preset: Whole) -> None:
     _check_company(preset)
     for name in ("region", "radius", "flow", "periodic"):
         if getattr(water, name) is not None:
-            raise LabError(f"water.{name}: water between grains starts level and at rest; give water.depth.")
+            remedy = "give water.depth, moisture or saturation"
+            raise LabError(f"water.{name}: water between grains starts level and at rest; {remedy}.")
     asked = liquid.spacing(preset) if water.spacing == "auto" else water.spacing
     if liquid.spacing(preset) < ROUNDED * COARSEST * preset.mean_diameter:
         least = show(COARSEST * preset.mean_diameter, "m")
@@ -86,8 +88,9 @@ def _check_company(preset: Whole) -> None:
         "water.model": (preset.water.model != "sph", "in frozen, linear or level water"),
         "tanks": (bool(preset.tanks), "beside further tanks"),
         "water.shifting": (preset.water.shifting != "none", "with shifted particles"),
-        "contact.cohesion": (preset.contact.cohesion != "none", "with bridges"),
     }
+    if preset.contact.cohesion != "none":
+        beside["contact.cohesion"] = True, f"with bridges (this water fills {_filled(preset)} of the pores)"
     for name, part in preset.parts.items():
         if not part.sieve or part.floats:
             raise LabError(
@@ -97,3 +100,9 @@ def _check_company(preset: Whole) -> None:
     for key, (there, what) in beside.items():
         if there:
             raise LabError(f"{key}: grains in water are not computed {what} yet; leave this out, or the water.")
+
+
+def _filled(preset: Whole) -> str:
+    """How much of the bed's pores is filled, in words."""
+    wet = state(preset)
+    return f"{100.0 * wet.saturation:.3g} %" if wet else "some"
