@@ -8,14 +8,24 @@ from solvers.tank.outline import moments
 STEPS = 60  # of a bisection
 
 
+def is_box(outline: np.ndarray) -> bool:
+    """Whether a tank is a rectangle on a level floor, where depths and areas are in proportion."""
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    return len(outline) == 4 and bool(((outline == low) | (outline == high)).all())
+
+
 def area_up_to(outline: np.ndarray, depth: float) -> float:
     """The area (m²) of a tank up to a depth (m) over its lowest point; above the tank none is added."""
+    if is_box(outline):
+        return float(np.ptp(outline[:, 0])) * float(np.clip(depth, 0.0, np.ptp(outline[:, 1])))
     deep = min(depth, float(np.ptp(outline[:, 1])))
     return area_of(below(outline, float(outline[:, 1].min()) + deep)) if deep > 0.0 else 0.0
 
 
 def depth_up_to(outline: np.ndarray, area: float) -> float:
     """The depth (m) up to which a tank has an area (m²); of more than it has, as if it went on as wide as it is."""
+    if is_box(outline):
+        return area / float(np.ptp(outline[:, 0]))
     whole, high = area_of(outline), float(np.ptp(outline[:, 1]))
     if area >= whole:
         return high + (area - whole) / float(np.ptp(outline[:, 0]))
@@ -32,6 +42,8 @@ def bed_depth(outline: np.ndarray, position: np.ndarray, weight: np.ndarray) -> 
     there = np.isfinite(position).all(axis=1)
     lowest, high = float(outline[:, 1].min()), float(np.ptp(outline[:, 1]))
     centre = float(np.average(position[there, 1], weights=weight[there])) - lowest
+    if is_box(outline):
+        return 2.0 * centre
     return _bisected(lambda depth: moments(below(outline, lowest + depth))[1][1] - lowest, centre, high)
 
 
