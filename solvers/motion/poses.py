@@ -17,8 +17,9 @@ class Poses:
     R(φ_a − φ_b) and e = R(φ_b)ᵀ (P_a − P_b). This is exact, and no fictitious force is needed.
 
     With `long` steps, of several of the carrier's, the pose in the middle is the mean of those at the ends, and the
-    walls' velocities are the way between these over the step, to second order. So is the walls' acceleration, the
-    change of their velocity over the last long step: that of a single step of the carrier's has the knocks of grains.
+    walls' velocities are the way between these over the step, to second order. It ends with the carrier's present step;
+    where the motion is prescribed, its own length after it began. So is the walls' acceleration, the change of their
+    velocity over the last long step: that of a single step of the carrier's has the knocks of grains.
     """
 
     def __init__(self, arrays: State, carrier, worlds: int, long: bool = False):
@@ -36,6 +37,7 @@ class Poses:
             names = "former_y", "former_z", "former_rate"
             self.former = own.reals(world, *names, kind=own.exact)  # velocities at the start of the step before
             (self.known,) = own.integers(world, "known")  # whether they are known
+            (self.began,) = own.reals(world, "began", kind=own.exact, kept=False)  # s, when the step did
 
     def forget(self) -> None:
         """Forget the velocity of the walls in the step before."""
@@ -56,6 +58,7 @@ class Poses:
         if ti.static(self.moving):
             start = self.carrier.kinematics(w, t)
             if ti.static(self.long):
+                self.began[w] = ti.cast(t, self.exact)
                 for k in ti.static(range(3)):
                     if self.known[w] > 0:
                         start[6 + k] = (start[3 + k] - self.former[k][w]) / ti.cast(dt, self.exact)
@@ -76,10 +79,13 @@ class Poses:
     def note_passage(self, w, t, dt):
         """Note how the tank moves through the step of dt (s) from time t (s), once its carrier has responded.
 
-        A long one ends with the carrier's present step.
+        A long one ends with the carrier's present step, whose beginning t then is.
         """
         if ti.static(self.moving):
-            found = self.carrier.passage(w, t, dt)
+            begin = ti.cast(t, self.exact)
+            if ti.static(self.long):
+                begin = self.began[w]
+            found = self.carrier.passage(w, begin, dt)
             start = ti.Vector([self.start[k][w] for k in ti.static(range(3))])
             middle = ti.Vector([found[k] for k in ti.static(range(6))])
             end = ti.Vector([found[6 + k] for k in ti.static(range(3))])
