@@ -118,6 +118,7 @@ class SceneView:
             grains |= self._paint_inside(picture, k, frame, self.tank_camera(k, frame))
         self._paint_grains(picture, grains)
         for k, bed in enumerate(self.beds):
+            self._water.paint_table(picture, self.tank_camera(k, frame), bed, self._rows[k][frame])
             self.overlay.paint(picture, self.tank_camera(k, frame), bed, k, frame)
             self._paint_marks(picture, k, frame)
             if self._earth and not bed.footage.sea:
@@ -130,6 +131,7 @@ class SceneView:
         self._paint_tank(picture, bed, camera)
         self._paint_fixed(picture, bed, camera)
         self._paint_grains(picture, self._paint_inside(picture, k, frame, camera, part=True))
+        self._water.paint_table(picture, camera, bed, self._rows[k][frame])
         self.overlay.paint(picture, camera, bed, k, frame)
         self._paint_marks(picture, k, frame, camera)
 
@@ -170,7 +172,8 @@ class SceneView:
             place = place if part else self._on_ground(k, place, self._pose[frame, k])
             colour = self.overlay.under(self._colouring.colours(bed, row))
             marks, *rest = self._colouring.style(bed, colour)
-            found[k] = to_discs(camera, place, bed.radius, bed.angle(row)), colour, (self.overlay.under(marks), *rest)
+            size = self._water.grain_size * bed.radius
+            found[k] = to_discs(camera, place, size, bed.angle(row)), colour, (self.overlay.under(marks), *rest)
         paint_parts(picture, camera, bed, row, self._time[frame], self._unit, self._theme)
         return found
 

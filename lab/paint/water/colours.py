@@ -12,6 +12,7 @@ import numpy as np
 
 from lab.paint.colours import SAMPLED_FRAMES, Colouring, round_up, spread, table
 from lab.paint.water.vorticity import vorticity
+from solvers.mixture.bed import depth_up_to
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
@@ -60,17 +61,77 @@ def turning(beds: Sequence[Bed]) -> Colouring:
     return Colouring("vorticity in the tank (1/s)", -top, top, table("coolwarm", low=0.02), values)
 
 
+def excess(beds: Sequence[Bed]) -> Colouring:
+    """What the pressure is over that of water at rest with the same mean surface, level in the earth's axes."""
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return bed.drops("water_pressure", frame) - at_rest(bed, frame)
+
+    low, high = ends(beds, values)
+    top = round_up(max(-low, high, 1.0))
+    factor, unit = (1e-3, "kPa") if top >= 1e3 else (1.0, "Pa")
+
+    def shown(bed: Bed, frame: int) -> np.ndarray:
+        return factor * values(bed, frame)
+
+    return Colouring(f"pressure over rest ({unit})", -factor * top, factor * top, table("coolwarm", low=0.02), shown)
+
+
+def at_rest(bed: Bed, frame: float) -> np.ndarray:
+    """The hydrostatic pressure (n,), Pa, at the places of the water: ρ g (h_w − h), above the surface 0.
+
+    h = y sin φ + z cos φ is the height over the earth at the tank's roll φ, and h_w that of the mean surface in the
+    middle of the tank.
+    """
+    pool, outline = bed.footage.water, bed.footage.outline
+    place, roll = bed.water_position(frame), float(bed.pose[round(float(frame)), 2])
+    middle = 0.5 * float(outline[:, 0].min() + outline[:, 0].max())
+    over = (mean_level(bed, frame) - place[:, 1]) * np.cos(roll) + (middle - place[:, 0]) * np.sin(roll)
+    return pool.density * pool.gravity * np.maximum(over, 0.0)
+
+
+def mean_level(bed: Bed, frame: float) -> float:
+    """The mean height (m) of the water's surface in the tank's axes: below it lies Σ V/ε, water and grains together."""
+    pool, outline = bed.footage.water, bed.footage.outline
+    found = depth_up_to(outline, _taken(bed, frame)) + float(outline[:, 1].min())
+    if pool.level is None:
+        return found
+    return found + pool.level - depth_up_to(outline, _taken(bed, 0)) - float(outline[:, 1].min())
+
+
+def _taken(bed: Bed, frame: float) -> float:
+    """The area (m²) that the water of a bed takes up with the grains in it."""
+    volume = bed.footage.water.volume[bed.world]
+    return float(np.sum(volume / _porosity(bed, frame) if bed.footage.water.porous else volume))
+
+
+def _porosity(bed: Bed, frame: float) -> np.ndarray:
+    """The share of the room about each particle that is water."""
+    place = bed.drops("water_position", frame)
+    return bed.drops("water_porosity", frame) if bed.footage.water.porous else np.ones(len(place))
+
+
+def porosity(beds: Sequence[Bed]) -> Colouring:
+    """The share of the room about each particle that is water, from the densest bed to clear water."""
+    low = np.floor(10.0 * min(ends(beds, _porosity)[0], 0.9)) / 10.0
+    return Colouring("porosity", float(low), 1.0, table("cividis"), _porosity)
+
+
 FIELDS: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
     "pressure": pressure,
     "speed": speed,
     "vorticity": turning,
     "particles": speed,
+    "excess-pressure": excess,
 }
+OF_WET: dict[str, Callable[[Sequence[Bed]], Colouring]] = {"porosity": porosity}  # of water between grains
+SEEN_THROUGH = ("vorticity", "excess-pressure", *OF_WET)  # fields for which grains in water are painted small
 
 
 def field(name: str, beds: Sequence[Bed]) -> Colouring | None:
     """The colours of water by this name, one scale for all beds; None for water that looks like water."""
-    return FIELDS[name](beds) if name in FIELDS else None
+    known = FIELDS | OF_WET
+    return known[name](beds) if name in known else None
 
 
 def ends(

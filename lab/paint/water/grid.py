@@ -17,6 +17,7 @@ from lab.paint.painter import BAND, PER_TASK, Index, Shares, Table, off_outline,
 REACH = 2.1  # R over the distance of the particles; smaller, and their lattice shows, larger, and corners grow round
 FINEST = 0.25  # distance of the nodes over that of the particles, where pixels are finer
 REACH_IN_NODES = 2.2  # least R over the distance of the nodes, where pixels are coarser
+HALF = 0.5  # the level on the surface
 LEAST = 0.05  # of the kernel inside the tank: nodes behind walls, where the quotient is never looked at
 BEYOND = 0.35  # how far the grid goes on beyond an open edge, over the tank's larger side
 
@@ -64,6 +65,27 @@ class Grid:
     def level(self, sums: np.ndarray) -> np.ndarray:
         """The share of the kernel inside the tank that the sums Σ V W fill, at the nodes."""
         return sums / self._inside
+
+    def surface(self, level: np.ndarray, spacing: float) -> np.ndarray:
+        """The uppermost places (k, 2) m where the level falls through one half, across the tank; NaN where it is dry.
+
+        The median over a `spacing` (m) to either side leaves out drops.
+        """
+        inside = np.where(self.distances < 0.5 * self.distance, level, 0.0)
+        wet = inside >= HALF
+        top = self.rows - 1 - np.argmax(wet[::-1], axis=0)
+        upper, columns = np.minimum(top + 1, self.rows - 1), np.arange(self.columns)
+        here, above = inside[top, columns], level[upper, columns]
+        share = np.clip((here - HALF) / np.maximum(here - above, 1e-6), 0.0, 1.0)
+        height = np.where(wet.any(axis=0), top + share, np.nan)
+        reach = max(1, round(spacing / self.distance))
+        padded = np.pad(height, reach, mode="edge")
+        known = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)
+        left, right = self.outline[:, 0].min(), self.outline[:, 0].max()
+        y = self.low[0] + self.distance * columns
+        smooth = np.where(np.isfinite(height), np.nanmedian(np.where(np.isfinite(known), known, -1.0), axis=1), np.nan)
+        kept = (y >= left) & (y <= right)
+        return np.column_stack([y, self.low[1] + self.distance * smooth])[kept]
 
     @cached_property
     def distances(self) -> np.ndarray:

@@ -9,9 +9,9 @@ import numpy as np
 
 from lab.paint import palette
 from lab.paint.colours import Colouring
-from lab.paint.painter import Camera, paint_grains, to_discs
+from lab.paint.painter import Camera, paint_grains, paint_strokes, to_discs
 from lab.paint.water.air import BY_ITSELF, colouring_of_air, paint_air
-from lab.paint.water.colours import field
+from lab.paint.water.colours import SEEN_THROUGH, field
 from lab.paint.water.foam import foam, ramp
 from lab.paint.water.grid import Grid, sampled
 from lab.paint.water.surface import Paints, paint_surface
@@ -26,6 +26,8 @@ FIELD_EDGE = (40, 46, 56)  # of the line around a field
 LINE = 0.085  # thickness of the line along the surface, in units of a page
 STRONG = 0.85  # of that line
 WITHIN, APART = 0.62, 0.46  # levels at a particle: above, it is part of the surface; below, it is a drop of its own
+TABLE, THICK = (14, 62, 150), 1.3  # of the line along the surface of water in a bed, over the line of water alone
+SMALL = 0.4  # of their radii: grains in water whose field is shown
 DISC = 0.46  # radius of a particle painted as a disc, over the distance of the particles
 
 
@@ -45,6 +47,8 @@ class WaterLayer:
         self._plain = colour == BY_ITSELF or not self.colouring  # water looks like water
         self._line = max(1.0, LINE * unit)
         self._grids: dict[tuple[Bed, Basin], Grid] = {}
+        porous = any(bed.footage.water.porous for bed in wet)
+        self.grain_size = SMALL if porous and colour in SEEN_THROUGH else 1.0
 
     def paint(self, picture: np.ndarray, camera: Camera, bed: Bed, frame: int, under: tuple = palette.HOLD) -> None:
         """Paint a bed's water over a picture, in place; camera: of the tank's points; under: colour of the tank."""
@@ -88,6 +92,20 @@ class WaterLayer:
         drops = apart > 0.0
         _paint_discs(picture, camera, place[drops], (apart * np.sqrt(volume / np.pi))[drops], colour[drops])
         paint_surface(picture, camera, grid, level, _toned(grid, sums, place, volume, share), self._paints(under))
+
+    def paint_table(self, picture: np.ndarray, camera: Camera, bed: Bed, frame: int) -> None:
+        """Paint the surface of water between grains, over these, as a line."""
+        pool = bed.footage.water
+        if not (pool and pool.porous) or self._discs:
+            return
+        for basin in bed.footage.basins:
+            place = bed.water_position(frame)
+            there = np.isfinite(place).all(axis=1)
+            grid = self._grid(bed, basin, camera)
+            volume = pool.volume[bed.world][there] / bed.drops("water_porosity", frame)[there]
+            line = camera.pixels(grid.surface(grid.level(grid.sums(place[there], volume)), pool.spacing))
+            half = np.full(len(line) - 1, 0.5 * THICK * self._line)
+            paint_strokes(picture, np.column_stack([line[:-1], half, line[1:], half]), TABLE)
 
     def _grid(self, bed: Bed, basin: Basin, camera: Camera) -> Grid:
         """The grid over a bed's tank, kept as long as the picture's scale stays."""

@@ -12,7 +12,8 @@ from solvers.fluid.given import Gauge, Level
 @dataclass(frozen=True)
 class Pool:
     """volume (W, n): of the particles in the plane, m²; gauges of pressure and of depth, by name; air: as volume;
-    flows: whether it flows at first; porous: whether it is between grains."""
+    flows: whether it flows at first; porous: whether it is between grains; level: height (m) of its surface as it
+    starts, None where that follows from its amount; density (kg/m³); gravity (m/s²)."""
 
     volume: np.ndarray
     gauges: dict[str, Gauge]
@@ -20,6 +21,9 @@ class Pool:
     air: np.ndarray = field(default_factory=lambda: np.zeros((1, 0)))
     flows: bool = False
     porous: bool = False
+    level: float | None = None
+    density: float = 1000.0
+    gravity: float = 9.81
 
     @classmethod
     def of(cls, preset: Preset, volume: np.ndarray, air: np.ndarray) -> "Pool | None":
@@ -28,7 +32,9 @@ class Pool:
             return None
         water, (gauges, levels, _) = preset.liquid, parted(preset.gauges)
         of_gauges = dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True))
-        return cls(volume, *of_gauges, air, preset.water.flow is not None, preset.wet)
+        level = float(preset.pools[0].level) if preset.water.depth is not None else None
+        weight = level, preset.water.density, preset.run.gravity
+        return cls(volume, *of_gauges, air, preset.water.flow is not None, preset.wet, *weight)
 
     @property
     def spacing(self) -> float:

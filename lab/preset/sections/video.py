@@ -20,13 +20,14 @@ OF_GRAINS = (
     "shape",
     "spin",
 )  # what `lab.paint.colours` paints
-OF_WATER = ("water", "pressure", "speed", "vorticity", "particles")  # what `lab.paint.water` paints
+OF_WATER = ("water", "pressure", "speed", "vorticity", "particles", "excess-pressure")  # what `lab.paint.water` paints
+OF_WET = ("porosity",)  # of water between grains
 OF_AIR = ("air",)  # the air's pressure, and water as it is
 CARGOES = (  # whose looks are in `lab.paint.cargo`
     *("wheat", "rice", "corn", "sunflower", "beans", "soybeans", "chickpeas", "sand"),
     *("acetate", "coal", "iron-ore", "copper-ore", "gold-ore", "aluminium", "stone"),
 )
-COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR)
+COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR, *OF_WET)
 OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR}
 
 OF_SPACE = "azimuth", "elevation", "orbit", "cut", "slice"  # keys of scenes in space
@@ -104,7 +105,8 @@ class Video:
 
 def colours_of(matters: Collection[str]) -> tuple[str, ...]:
     """The colours of these matters; the first one is painted where none is named. Those of grains for an empty tank."""
-    return tuple(dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS.get(matter, ())))
+    words = dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS.get(matter, ()))
+    return (*words, *(OF_WET if {"grains", "water"} <= set(matters) else ()))
 
 
 def check_viewpoint(chosen: Video, in_space: bool) -> None:
@@ -124,7 +126,10 @@ def check_video(video: Video, matters: Collection[str], in_space: bool = False) 
     """Raise LabError for what cannot be shown, and for picture sizes that the video codec cannot encode."""
     check_viewpoint(video, in_space)
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
-    if video.colour and not set(fitting) & set(matters):
+    if video.colour in OF_WET:
+        if not {"grains", "water"} <= set(matters):
+            raise LabError(f"video.colour: {video.colour} is of water between grains; add [grains] and [water].")
+    elif video.colour and not set(fitting) & set(matters):
         said = f"{' or '.join(fitting)}, and there {'are' if 'grains' in fitting else 'is'} none"
         raise LabError(f"video.colour: goes with {said}; add a table [{fitting[0]}], or leave this out.")
     for name in ("width", "height"):

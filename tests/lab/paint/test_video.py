@@ -16,8 +16,9 @@ from lab.paint.page.texts import Texts
 from lab.paint.page.theme import LIGHT, luminance
 from lab.paint.video import playback, poster, render_grid, render_recording
 from lab.paint.water.colours import FIELDS
+from lab.paint.water.colours import OF_WET as WET_FIELDS
 from lab.preset.fields import taken_of
-from lab.preset.sections.video import OF_AIR, Video, colours_of
+from lab.preset.sections.video import OF_AIR, OF_WET, Video, colours_of
 from solvers.machine.runtime import initialise
 from tests.oracles.synthetic import box, frame, recorder, sample
 from tests.oracles.tampering import sealed
@@ -203,9 +204,10 @@ def test_spin_is_coloured_in_turns_a_second(tmp_path):
 
 def test_a_preset_may_name_every_colour_and_no_other():
     water = [name for name in ("water", *FIELDS) if name not in MODES]
-    assert taken_of(Video)["colour"].words == (*MODES, *water, *OF_AIR)
+    assert taken_of(Video)["colour"].words == (*MODES, *water, *OF_AIR, *OF_WET)
     assert colours_of(("grains",)) == tuple(MODES)
     assert colours_of(("water",)) == ("water", *FIELDS)
+    assert colours_of(("grains", "water"))[-1:] == OF_WET and set(WET_FIELDS) == set(OF_WET)
     assert set(colours_of(("water", "air"))) >= set(OF_AIR)
 
 

@@ -117,6 +117,13 @@ def test_water_that_enters_a_hold_of_grains_waits_at_first():
     assert scene.fluid.count == scene.fluid.waiting[0]
 
 
+def test_the_colour_of_pores_needs_both():
+    """Water alone has no porosity, and a wet bed has."""
+    with pytest.raises(LabError, match=r"^video\.colour: porosity is of water between grains; add \[grains\] and "):
+        load("sloshing/quick", {"video.colour": "porosity"})
+    assert load(WET, {"video.colour": "porosity"}).resolved.video.colour == "porosity"
+
+
 def test_a_share_of_water_needs_grains():
     """Water alone has a depth."""
     for key in ("moisture", "saturation"):

@@ -106,7 +106,7 @@ def test_the_window_says_how_much_water_there_is_and_offers_its_controls(opened)
 def test_keys_go_through_the_colours_and_the_curves_of_water(opened):
     session, _, _ = opened
     colours, curves = [], []
-    for _ in range(5):
+    for _ in range(6):
         pictures = session.picture()
         assert pictures.shape == (720, 1280, 3)
         colours.append(session.look.colour)
@@ -115,7 +115,7 @@ def test_keys_go_through_the_colours_and_the_curves_of_water(opened):
         session.picture()
         curves.append(session.look.inset)
         session.key("i")
-    assert colours == ["water", "pressure", "speed", "vorticity", "particles"]
+    assert colours == ["water", "pressure", "speed", "vorticity", "particles", "excess-pressure"]
     assert sorted(curves) == ["depths", "nothing", "pressures", "turn", "water"]
 
 
