@@ -5,7 +5,8 @@ with g_n = g cos φ and the tank's heave. It is averaged over the particles with
 depth of the settled bed, across the bed's width: a straight line through them, at the middle of the width, so that
 what sway and roll press to one side cancels. The pore-pressure ratio is this mean over the buoyant effective stress
 there, r_u = Δp/σ', σ' = (1 − ε)(ρ_s − ρ) g H/2 in the settled bed, of grains above a water table without buoyancy
-(Seed & Lee 1966: at r_u = 1 the grains bear nothing).
+(Seed & Lee 1966: at r_u = 1 the grains bear nothing). Of a bed that has settled, what Δp is in the first frame, at
+rest, is taken off: the error of the particles, some 10 Pa there.
 
 pore_pressure_ratio_peak: the largest in any frame; pore_pressure_peak: the same in Pa.
 pore_pressure_ratio_lowest: the smallest, suction where the bed is sheared and dilates.
