@@ -8,7 +8,7 @@ from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.water import liquid
-from lab.preset.sections.wet.states import SHARES, state
+from lab.preset.sections.wet.states import SHARES, share_of, state
 from lab.preset.units import show
 
 COARSEST = 2.0  # grains' diameters: the least spacing of water, whose kernel then smooths over four of them
@@ -86,6 +86,7 @@ def _check_company(preset: Whole) -> None:
         "water.between_walls": (preset.water.between_walls, "with friction on the walls before and behind"),
         "water.full": (preset.water.full, "in a full tank"),
         "water.model": (preset.water.model != "sph", "in frozen, linear or level water"),
+        "inflow": (bool(preset.inflow and share_of(preset.water)), "that are wet by a share and take in water, too,"),
         "tanks": (bool(preset.tanks), "beside further tanks"),
         "water.shifting": (preset.water.shifting != "none", "with shifted particles"),
     }
