@@ -17,6 +17,7 @@ from types import ModuleType
 from lab.measures import (
     axle_roll,
     centre_of_mass,
+    collapse,
     contact_number,
     critical_angle,
     drum,
@@ -89,6 +90,7 @@ MEASURES = (
     swelling,
     top_altitude,
     centre_of_mass,
+    collapse,
     onset,
     settlement,
     pore_pressure,
