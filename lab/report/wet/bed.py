@@ -91,18 +91,38 @@ def period(preset: Preset) -> float | None:
     return 1.0 / max(found) if found else None
 
 
+def half_times(preset: Preset, scene: Scene, wet: State) -> tuple[float, float, float] | None:
+    """t50 (s) of a bed as it is computed, with stiff water, and with grains as stiff as their material besides.
+
+    None of a bed that the water bears, or that has none.
+    """
+    high, borne = _loaded(preset, scene, wet)
+    if not (high > 0.0 and borne > 0.0):
+        return None
+    layer = high, scene.mixture.kinematic * scene.fluid.water.density, _permeability(scene, wet)
+    skeleton, real = modulus(scene, borne), modulus(scene, borne, real=True)
+    return half_time(*layer, skeleton, _bulk(scene, wet)), half_time(*layer, skeleton), half_time(*layer, real)
+
+
+def _loaded(preset: Preset, scene: Scene, wet: State) -> tuple[float, float]:
+    """How deep (m) the soaked part of a bed is, and the effective stress (Pa) at half of that."""
+    high = min(wet.bed, wet.level)
+    return high, (wet.dry - (1.0 - wet.porosity) * preset.water.density) * scene.gravity * 0.5 * high
+
+
+def _bulk(scene: Scene, wet: State) -> float:
+    """The modulus (Pa) of the water in a bed, K = ρ c0²/ε."""
+    water = scene.fluid.water
+    return water.density * water.sound_speed**2 / wet.porosity
+
+
 def _drainage(preset: Preset, scene: Scene, wet: State) -> Rows:
     """How stiff water and skeleton are, and how fast the bed drains."""
-    water, gravity = scene.fluid.water, scene.gravity
-    high = min(wet.bed, wet.level)
-    borne = (wet.dry - (1.0 - wet.porosity) * preset.water.density) * gravity * 0.5 * high
-    if not (high > 0.0 and borne > 0.0):
+    times = half_times(preset, scene, wet)
+    if times is None:
         return []
-    bulk, skeleton = water.density * water.sound_speed**2 / wet.porosity, modulus(scene, borne)
-    real = modulus(scene, borne, real=True)
+    bulk, skeleton = _bulk(scene, wet), modulus(scene, _loaded(preset, scene, wet)[1])
     taken = bulk / (bulk + skeleton)
-    layer = high, scene.mixture.kinematic * water.density, _permeability(scene, wet)
-    times = [half_time(*layer, *pair) for pair in ((skeleton, bulk), (skeleton,), (real,))]
     rows = [
         (
             "stiffness",

@@ -27,6 +27,7 @@ from lab.studies.reproduce.water import (
     dam_break,
     damper,
     drag,
+    drainage,
     impact,
     prismatic,
     response,
@@ -109,6 +110,7 @@ FIGURES: Mapping[str, Callable] = {
     "coupled heave and roll": coupled.heave_and_roll,
     "roll in four ways": four_ways.figure,
     "tank tuning": tuning.figure,
+    "drainage": drainage.figure,
 }
 SECTIONS: Mapping[str, Callable[[Found], ReportSection]] = {
     "section": section.report,

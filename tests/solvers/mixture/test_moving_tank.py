@@ -10,6 +10,7 @@ WIDTH, LEVEL = 0.08, 0.05
 AFTER = 0.1  # s
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "motion", [Sway(amplitude=0.05, frequency=1.0), Roll(amplitude=0.3, frequency=1.0)], ids=["sway", "roll"]
 )
