@@ -46,9 +46,11 @@ def against(
 ) -> Figure:
     """A measure against the number in a key of the grid, a curve a run, ± standard deviation.
 
-    line: the run that is a level line; above: points up to this number are left out.
+    line: the run that is a level line; above: points up to this number are left out. Runs whose grid has no such key
+    are left out.
     """
-    families = {name: outcomes for name, outcomes in found.items() if name != line}
+    has = {name: all(key in one.setting for one in outcomes) for name, outcomes in found.items()}
+    families = {name: outcomes for name, outcomes in found.items() if name != line and has[name]}
     figure, axes, colours = _begin(len(families))
     for (name, outcomes), colour in zip(families.items(), colours, strict=True):
         measured = [(leading_number(one.setting[key]), one[of]) for one in outcomes]
