@@ -70,12 +70,12 @@ def fronts(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return time, way, high[0] - low[0]
 
 
-def _half(time: np.ndarray, way: np.ndarray, least: float, start: float) -> Value:
-    """When half of the way (F, W) of each front is made, after `start` (s)."""
+def _half(time: np.ndarray, way: np.ndarray, least: np.ndarray, start: float) -> Value:
+    """When half of the way (F, W) of each front is made, after `start` (s), if it is `least` (W,) m at least."""
     half, error = np.full(way.shape[1], np.nan), np.full(way.shape[1], np.nan)
-    for w, front in enumerate(way.T):
+    for w, (front, far) in enumerate(zip(way.T, least, strict=True)):
         beyond = np.flatnonzero(front >= 0.5 * front[-1])
-        if front[-1] > least and len(beyond) and beyond[0] > 0:
+        if front[-1] > far and len(beyond) and beyond[0] > 0:
             k = beyond[0]
             part = (0.5 * front[-1] - front[k - 1]) / (front[k] - front[k - 1])
             half[w], error[w] = time[k - 1] + part * (time[k] - time[k - 1]) - start, 0.5 * (time[k] - time[k - 1])
