@@ -19,6 +19,7 @@ from lab.studies.verify import (
     sameness,
     turntable,
     water,
+    wet,
 )
 from lab.studies.verify.impacts import chung_ooi, in_space, oblique, restitution
 
@@ -37,6 +38,7 @@ MODULES = (
     sameness,
     turntable,
     water,
+    wet,
 )
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 SUITE = Suite(
@@ -48,7 +50,7 @@ SUITE = Suite(
     water.TEXTS,
 )
 # Cases whose step is a preset's: those of `impacts` have steps of draft beside the derived ones in any case.
-BY_LEVEL = tuple(case for module in MODULES if module not in (*MODULES[:4], water) for case in module.CASES)
+BY_LEVEL = tuple(case for module in MODULES if module not in (*MODULES[:4], water, wet) for case in module.CASES)
 
 
 def suite_at(level: str) -> Suite:

@@ -7,17 +7,12 @@ import numpy as np
 import pytest
 import taichi as ti
 
-from solvers.fluid.given import Fluid, Water, particles
-from solvers.fluid.timestep import longest_pace
+from lab.studies.verify.wet.laws import di_felice
 from solvers.machine import runtime
 from solvers.machine.state import State
 from solvers.mixture.drag import DRAG
-from solvers.mixture.given import Mixture
-from solvers.motion.tilt import Tilt
 from solvers.simulation import Simulation
-from tests.oracles.given import scene_of
-from tests.oracles.scenes import box, material
-from tests.oracles.soaked import DIAMETER, GLASS, SPACING, di_felice, fixed_bed, rows, soaked, speed_between
+from tests.oracles.soaked import DIAMETER, rows, soaked
 
 GRAVITY, WIDTH, LEVEL = 9.81, 0.08, 0.05
 DENSITY, VISCOSITY = 1000.0, 1e-3
@@ -126,68 +121,8 @@ def test_laws_of_drag_have_their_limits(coefficient):
     assert coefficient("gidaspow", speed, 0.99) == pytest.approx(coefficient("wen-yu", speed, 0.99), rel=0.02)
     for porosity in (0.4, 0.7, 0.95):
         for speed in (1e-3, 0.1, 1.0):
-            assert coefficient("di-felice", speed, porosity) == pytest.approx(di_felice(speed, porosity), rel=1e-5)
-
-
-@pytest.mark.slow
-def test_each_matter_bears_its_share_and_a_soaked_bed_is_quiet():
-    """Water ρ g H on the whole floor, grains their buoyant weight, each within 2 % in a bed of 15 layers under water.
-
-    The bed is nearly twice as deep as the kernel's radius. Near walls the sums of single grains are off by more.
-    Grains at rest have less than 1e-6 m g d each.
-    """
-    place = rows(19, 15, 1.0, 0.5 * DIAMETER)
-    place[..., 0] *= 1.01
-    solid = 285 * np.pi / 6.0 * DIAMETER**2
-    run = soaked(place, WIDTH, 0.14, 0.09, round((WIDTH * 0.09 - solid) / SPACING**2))
-    run.advance(run.whole(round(1.5 / run.dt)))
-    grains, water = on_floor(run, 1.0)
-    of_grains, of_water = (mass.sum() for mass in masses(run))
-    now = run.observe()
-    run.close()
-    assert grains == pytest.approx(GRAVITY * of_grains * (1.0 - DENSITY / GLASS), rel=0.02)
-    assert water == pytest.approx(GRAVITY * (of_water + of_grains * DENSITY / GLASS), rel=0.02)
-    assert now["kinetic"][0] + now["rotational"][0] < 1e-6 * of_grains * GRAVITY * DIAMETER
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("gap", [1.25, 1.6])
-def test_a_suspension_settles_as_richardson_and_zaki_say(gap):
-    """All grains together fall with −ε w where drag bears their buoyant weight, and the water bears it as a gradient.
-
-    w is of the law's own closed form. Grains come within 1 % of their speed in 80 ms; until 130 ms the suspension is
-    even, then it overturns. Speed: that of an exponent of Richardson and
-    Zaki off by 0.25. Gradient: 5 %, in the mean over one period of the slowest sound, 4 H/c0 = 67 ms,
-    in which grains still gain speed with 0.3 m/s² on average, a thirtieth of g.
-    """
-    width = 0.128
-    columns = int(width / (gap * DIAMETER))
-    gap = width / columns / DIAMETER
-    porosity = 1.0 - 2.0 / 3.0 * 0.25 * np.pi / gap**2
-    count = round(0.8 * width * 0.3 / SPACING**2)
-    run = soaked(
-        rows(columns, int(0.2 / (gap * DIAMETER)), gap, 0.04), width, 0.32, 0.3, count, water={"sound_speed": 18.0}
-    )
-    found = []
-    while run.time < 0.127:
-        run.advance(run.whole(round(2e-3 / run.dt)))
-        now = run.snapshot()
-        place, speed = now["position"][0], now["velocity"][0, :, 1]
-        low, high = place[:, 1].min() + 0.04, place[:, 1].max() - 0.04
-        inner = (place[:, 1] > low) & (place[:, 1] < high)
-        depth = now["water_position"][0, :, 1]
-        within = (depth > low) & (depth < high)
-        slope = np.polyfit(depth[within], now["water_pressure"][0, within], 1)[0]
-        found.append((run.time, speed[inner].mean(), slope))
-    run.close()
-    time, speed, slope = np.array(found).T
-    steady, period = time > 0.08, time > 0.06
-    driven = porosity * (GLASS - DENSITY) * GRAVITY
-    assert speed[steady].mean() == pytest.approx(
-        -porosity * speed_between(driven, porosity), rel=-0.25 * np.log(porosity)
-    )
-    heavier = 1.0 + (1.0 - porosity) * (GLASS - DENSITY) / DENSITY
-    assert slope[period].mean() == pytest.approx(-DENSITY * GRAVITY * heavier, rel=0.05)
+            told = di_felice(speed, porosity, DIAMETER)
+            assert coefficient("di-felice", speed, porosity) == pytest.approx(told, rel=1e-5)
 
 
 @pytest.mark.slow
@@ -227,51 +162,3 @@ def test_bands_of_a_world_move_as_one():
         run.close()
     for name in ("position", "water_position"):
         np.testing.assert_allclose(found[0][name], found[1][name], atol=1e-6 * DIAMETER)
-
-
-@pytest.mark.slow
-def test_a_percolated_bed_keeps_level_pressure_and_quiet():
-    """Over a hundred diameters of flow: level within 0.1 spacings, mean pressure within 1 % of ρ g H, scatter 2 %.
-
-    A bed that is fixed and goes on sideways without end, tilted by 0.1 rad, stands out of the water. Density that is
-    carried from step to step would drift with the path that water goes between grains. The speed, at the porosity that
-    water sees in the mean, is that at which the law of drag bears the slope of gravity, within 3 %.
-    """
-    width, deep, size, slope = 0.12, 0.1, 3e-3, 0.1
-    bed = fixed_bed(width, 0.16, size, 0.75)
-    porosity = 1.0 - np.pi / 6.0 * size**2 * len(bed) / (width * 0.16)
-    drops = particles(1, round(porosity * width * deep / 36e-6))
-    drops["volume"][0] = porosity * width * deep / drops.shape[1]
-    glass = material()
-    scene = scene_of(
-        np.full((1, 1), 0.5 * size), box(width, 0.3), glass, glass, fixed=bed, stiffness_scale=1e-3, thickness=size,
-        fluid=Fluid(Water(6e-3, 10.0, periodic=("y",), alpha=0.02), drops), mixture=Mixture(level=deep),
-        motions=[(Tilt(angle=slope, rate=0.5),)],
-    )  # fmt: skip
-    step = scene.time_step()
-    scene = scene.holding(replace(scene.fluid, substeps=longest_pace(scene, step)), step=step)
-    run = Simulation(scene, np.array([[[0.0, 0.28]]]), threads=1, arch="cpu")
-    run.advance(run.whole(round(0.9 / run.dt)))  # ten diameters
-    found = [look(run, width)]
-    for _ in range(9):
-        run.advance(run.whole(round(0.9 / run.dt)))
-        found.append(look(run, width))
-    seen = run.water.particles.read(run.water.particles.porosity)[0].mean()
-    run.close()
-    level, pressure, scatter, speed = np.array(found).T
-    head = DENSITY * GRAVITY * np.cos(slope) * deep
-    assert np.abs(level - level[0]).max() < 0.1 * 6e-3
-    assert np.abs(pressure[1:] - 0.5 * head).max() < 0.01 * head  # from twenty diameters on, when it has come to rest
-    assert scatter[2:].max() < 0.02 * head
-    driven = seen * DENSITY * GRAVITY * np.sin(slope) / (1.0 - seen)
-    assert -speed[1:].mean() == pytest.approx(speed_between(driven, seen, size), rel=0.03)
-
-
-def look(run: Simulation, width: float) -> tuple[float, float, float, float]:
-    """Level (m), mean pressure (Pa), its scatter off a line in the middle of the depth (Pa), and speed (m/s)."""
-    now, p = run.snapshot(), run.water.particles
-    height, pressure = now["water_position"][0, :, 1], now["water_pressure"][0]
-    inner = (height > 0.02) & (height < 0.07)
-    line = np.polyval(np.polyfit(height[inner], pressure[inner], 1), height[inner])
-    level = p.read(p.volume)[0][0].sum() / width
-    return level, pressure.mean(), (pressure[inner] - line).std(), now["water_velocity"][0, :, 0].mean()
