@@ -97,4 +97,4 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     lower.set_ylabel("moved by (d)")
 
 
-FIGURES = {"onset": draw}
+FIGURES = {"upper_layer": draw}

@@ -157,6 +157,6 @@ def test_each_has_a_figure(tmp_path):
 
     with open_recording(record_wet(tmp_path / "run", TIME, frame, preset=wet(**DRIVEN))) as recording:
         drawn = dict(figures(recording, measure_all(recording)))
-    assert {"onset", "settlement", "pore_pressure", "free_water"} <= drawn.keys()
-    for name in ("onset", "pore_pressure"):
+    assert {"upper_layer", "settlement", "pore_pressure", "free_water"} <= drawn.keys()
+    for name in ("upper_layer", "pore_pressure"):
         assert any(np.ptp(line.get_ydata()) > 0.1 for axes in drawn[name].axes for line in axes.lines)

@@ -26,7 +26,7 @@ COARSE = {"water.spacing": "38 mm"}
         (TWO, {"ship.damping": 0.1}, "ship.linear_damping: give either"),
         (TWO, {"ship.gyradius": False, "ship.roll_period": "1 s"}, "ship.roll_period: is that of ship and cargo"),
         (TWO, {"air.density": "1.2 kg/m^3"}, "air: air in a ship's tanks is not computed yet"),
-        (BOTH, {"water.depth": "20 mm"}, "ship: grains in water are not computed aboard a ship yet"),
+        (BOTH, {"water.depth": "20 mm"}, "tanks: grains in water are not computed beside further tanks yet"),
         ("sloshing/quick", {"water.model": "linear"}, 'water.model: "linear" is for tanks in a ship'),
         ("sloshing/quick", {"tank.length": "1 m"}, "tank.length: is that of a hold in a ship"),
     ],

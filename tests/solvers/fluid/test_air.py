@@ -58,6 +58,7 @@ def test_water_rests_under_air(pool):
     assert state["air_position"].shape[1] == gas.sum()
 
 
+@pytest.mark.slow
 def test_a_gauge_that_sees_more_air_than_water_shows_the_air(pool):
     """Squeezed water ends two fifths of a spacing below the middle of a gauge, which shows nothing of it."""
     made = scene(background=40.0)

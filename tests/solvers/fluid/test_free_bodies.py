@@ -57,6 +57,7 @@ def test_energy_is_kept_between_water_and_body(dropped):
     assert abs(rows["body_work"][0] + rows["part_work"][0]) < 1e-3 * exchanged
 
 
+@pytest.mark.slow
 def test_a_run_with_a_body_goes_on_bit_for_bit(dropped):
     """What is restored from the state of a step goes on as the run that was not interrupted."""
     run, start = dropped
