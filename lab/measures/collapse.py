@@ -29,10 +29,12 @@ COLOURS = BLUE, VERMILION, GREEN, GREY
 
 
 def applies(recording: Recording) -> bool:
-    """A gate opens before grains that start in a region of a tank at rest, in the plane."""
+    """A gate opens before grains that start in a region on the floor of a tank at rest, in the plane."""
     preset = recording.preset
-    starts = preset.grains.region is not None and preset.axes == 2
-    return bool(starts and _gates(recording) and not preset.motion.parts and preset.ship is None)
+    if preset.grains.region is None or preset.axes > 2 or preset.motion.parts or preset.ship is not None:
+        return False
+    lowest = min(z for _, z in preset.grains.region) - float(recording.outline[:, 1].min())
+    return bool(_gates(recording)) and lowest < float(recording.mean_diameter.max())
 
 
 def measure(recording: Recording) -> dict[str, Value]:

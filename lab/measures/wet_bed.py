@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from lab.assembly.water import mixture_of
+from lab.preset.kept.content import FIRST
 from lab.preset.sections.wet.states import share_of
 from lab.recording import Recording
 from solvers.machine.quantity import ROLL
@@ -133,11 +134,12 @@ class WetBed:
 
     @cached_property
     def gravity(self) -> np.ndarray:
-        """What presses the water on the floor (m/s²): g cos φ, and the heave of the tank."""
+        """What presses the water on the floor (m/s²): g cos φ, and the heave of the tank or ship."""
         series, run = self.recording.series, self.recording.preset.run
         roll, time = self.recording.frames["pose"][:][..., ROLL], series["time"]
         found = run.gravity * np.cos(roll)
-        if self.recording.preset.motion.heave and len(time) > 2:
+        preset = self.recording.preset
+        if (preset.motion.heave or preset.ship) and len(time) > 2:
             felt = np.gradient(series["pose_rate"][..., 1], time, axis=0)
             found = found + np.stack([np.interp(self.time, time, column) for column in felt.T], axis=1)
         return found
@@ -169,5 +171,6 @@ def wet_bed(recording: Recording) -> WetBed:
 
 
 def is_wet(recording: Recording) -> bool:
-    """Whether grains and water share the tank, and there are frames of them."""
-    return recording.content.wet and len(recording.frames["time"]) > 1
+    """Whether grains and as much water as at the start share the tank, and there are frames of them."""
+    entered = any(inlet.room == FIRST for inlet in recording.preset.inflow.values())
+    return recording.content.wet and not entered and len(recording.frames["time"]) > 1

@@ -40,3 +40,11 @@ def test_a_front_that_does_not_move_has_no_time(tmp_path):
     """A fifth of a diameter is no collapse."""
     found = of(tmp_path, lambda now: 0.2 * SIZE * min(now, 1.0))
     assert found["half_run_out_time"].value is None
+
+
+def test_grains_over_the_floor_are_no_column(tmp_path):
+    """What falls out of a funnel has no front."""
+    high = {"region": [["-48 mm", "40 mm"], ["48 mm", "40 mm"], ["48 mm", "190 mm"], ["-48 mm", "190 mm"]]}
+    folder = record_wet(tmp_path / "run", TIME[:3], lambda now: {}, preset=wet(parts={"gate": GATE}, grains=high))
+    with open_recording(folder) as recording:
+        assert not collapse.applies(recording)
