@@ -90,7 +90,8 @@ def falling(fast: bool) -> Found:
     note = """In a slab as thick as the grain its share of the room about it is up to 1.8 %, and it falls too slowly: by
     the porosity that it sees, by the flow back of what it displaces and by the pressure of what it pulls along; its
     wake has it fall faster, later. To the first order this follows from the kernel and the slab alone, and nothing is
-    fitted (`Disturbance`). In a slab twenty times as thick there is a twentieth of it."""
+    fitted (`Disturbance`). With water 2 d apart it is more than the 1 % that the law alone would be asked for. In a
+    slab twenty times as thick there is a twentieth of it."""
     head = "water's spacing", "slab", "tank", "largest error, law alone", "told by its disturbance", "beside both"
     return Found(lines, notes=[note], tables=[Table(head, table)])
 
