@@ -4,6 +4,11 @@ import taichi as ti
 
 from solvers.fluid.forces import Forces
 from solvers.fluid.lists.context import FluidContext
+from solvers.fluid.terms.carried_momentum import CarriedMomentum
+from solvers.fluid.terms.density_diffusion import DensityDiffusion
+from solvers.fluid.terms.term import Block, Pair, Sums, Term, doing
+from solvers.fluid.walls.divergence_correction import Closing
+from solvers.fluid.walls.slip_correction import SlidImage
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot
@@ -27,10 +32,23 @@ class Continuity:
     def __init__(self, arrays: State, context: FluidContext, forces: Forces):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
-        own, self.slip, self.stored = arrays.under("water.continuity"), forces.walls.walls.slip, forces.stored
+        own, slip, self.stored, self.voids = (
+            arrays.under("water.continuity"),
+            forces.walls.walls.slip,
+            forces.stored,
+            forces.voids,
+        )
         (self.diffused,) = own.reals((context.units.axis,), "diffused", kind=own.exact)
-        self.corrects = context.particles.wall_blocks > 0 and not context.constants.full
-        self.voids = forces.voids
+        self.sums, common = (sums := Sums()), (context.particles, context.constants, context.units, context.poses)
+        self.opened, self.walled, c = sums.room(), sums.room(), context.constants
+        self.corrects = context.particles.wall_blocks > 0 and not c.full
+        self.closing = Closing(sums, context.particles, c) if self.corrects else None
+        self.diffusion = DensityDiffusion(sums, *common) if c.diffusion.acts else None
+        carried = CarriedMomentum(sums, *common) if c.shifting.carries else None
+        self.slides = slip.acts
+        self.slid = SlidImage(sums, slip) if slip.acts else None
+        terms = [carried, self.diffusion, self.closing, self.slid]
+        self.beginning, self.adding, self.of_walls, self.ending = (doing(terms, part) for part in Term.parts)
 
     @ti.func
     def continuity_pass(self, u, frame, kick, dt):
@@ -48,82 +66,77 @@ class Continuity:
         """As `continuity_pass`, for a block; returns the powers (W/m) of diffusion and of walls at rest."""
         p, c = self.particles, self.constants
         lists = self.lists
-        w = self.units.world(u)
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
-        gradient = [p.load(p.gradient[a], b) for a in ti.static(range(p.axes))]
-        s, shrink = p.load(p.deviation, b), c.get("shrink")
-        gas = p.gases(b)
-        rest = [c.of("hydrostatic", gas) * self.down(w, a) for a in ti.static(range(p.axes))]
-        opened, evened, walled, closed = p.zeros(), p.zeros(), p.zeros(), p.zeros()
-        slid = p.zeros()
-        carried = [p.zeros() for _ in ti.static(range(p.axes))]
-        shift = [p.zeros() for _ in ti.static(range(p.axes))]
-        if ti.static(c.shifting.carries):
-            for a in ti.static(range(p.axes)):
-                shift[a] += p.load(p.shift[a], b)
-        tank = [ti.cast(self.tank_speed(w, a), p.real) for a in ti.static(range(p.axes))]
+        s, shrink, gas = p.load(p.deviation, b), c.get("shrink"), p.gases(b)
+        block = ti.static(Block(u, b, dt, origin, own, speed, s, s, gas))
+        sums = [p.zeros() for _ in ti.static(range(self.sums.count))]
+        for term in ti.static(self.beginning):
+            term.begin(block, sums)
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
             apart = lists.apart(own, origin, j)
-            t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-            weight = p.volume[jb, lane] * lists.visible(b, j, apart, AT_MIDDLE) * c.kernel.slope(t)
+            square = dot(apart, apart)
+            t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
+            volume = p.volume[jb, lane] * lists.visible(b, j, apart, AT_MIDDLE)
+            weight, other = volume * c.kernel.slope(t), gas - p.gas_at(jb, lane)
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-            other = gas - p.gas_at(jb, lane)
+            opening = weight
             if ti.static(c.two):
-                opened += (1.0 + c.get("lean_of_speed") * other) * weight * dot(nearing, apart)
-            else:
-                opened += weight * dot(nearing, apart)
-            if ti.static(c.shifting.carries):
-                away = (weight * (1.0 + s)) * dot(shift, apart)
-                shift_there = [p.shift[a][jb, lane] for a in ti.static(range(p.axes))]
-                away_there = (weight * (1.0 + p.deviation[jb, lane])) * dot(shift_there, apart)
-                for a in ti.static(range(p.axes)):
-                    own_flow, its_flow = away * (speed[a] - tank[a]), away_there * (p.velocity[a][jb, lane] - tank[a])
-                    carried[a] = carried[a] - (own_flow + its_flow)
-            if ti.static(c.diffusion.acts):
-                more = 2.0 * (p.deviation[jb, lane] - s)
-                if ti.static(c.diffusion.renormalised):
-                    both = [p.gradient[a][jb, lane] + gradient[a] for a in ti.static(range(p.axes))]
-                    more += dot(both, apart)
-                elif ti.static(c.diffusion.dynamic):
-                    more += 2.0 * dot(rest, apart)
-                if ti.static(c.two):
-                    more *= 1.0 - other * other
-                evened += weight * more
+                opening = (1.0 + c.get("lean_of_speed") * other) * weight
+            sums[self.opened] += opening * dot(nearing, apart)
+            pair = ti.static(Pair(jb, lane, apart, square, t, weight, volume, other, weight, apart, []))
+            for term in ti.static(self.adding):
+                term.add(block, pair, sums)
         if ti.static(p.wall_blocks > 0):
-            pieces = lists.pieces
-            for k in range(lists.beside.first[u, listed * pieces], lists.beside.first[u, (listed + 1) * pieces]):
-                j = lists.beside.slots[u, k]
-                jb, lane = lists.block_of(j), lists.lane_of(j)
-                apart = lists.apart(own, origin, j)
-                t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-                volume = p.volume[jb, lane] * lists.visible(b, j, apart, AT_MIDDLE)
-                weight = volume * c.kernel.slope(t)
-                nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                walled += weight * dot(nearing, apart)
-                if ti.static(self.corrects):
-                    closed += (volume * p.rate[jb, lane]) * c.kernel.value(t)
-                if ti.static(self.slip.acts):
-                    slid += weight * self.slip.dotted(jb, lane, apart)
-            closed *= c.get("value")
+            self.add_walls(block, listed, sums)
+        for term in ti.static(self.ending):
+            term.end(block, sums)
+        return self.end(block, dt, sums)
+
+    @ti.func
+    def add_walls(self, block: ti.template(), listed, sums: ti.template()):
+        """Add the wall particles beside a block."""
+        p, c, lists, of_block = self.particles, self.constants, self.lists, listed * self.lists.pieces
+        shrink = c.get("shrink")
+        begin, end = lists.beside.first[block.u, of_block], lists.beside.first[block.u, of_block + self.lists.pieces]
+        for k in range(begin, end):
+            j = lists.beside.slots[block.u, k]
+            jb, lane = lists.block_of(j), lists.lane_of(j)
+            apart = lists.apart(block.own, block.origin, j)
+            square = dot(apart, apart)
+            t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
+            volume = p.volume[jb, lane] * lists.visible(block.b, j, apart, AT_MIDDLE)
+            weight = volume * c.kernel.slope(t)
+            nearing = [p.velocity[a][jb, lane] - block.speed[a] for a in ti.static(range(p.axes))]
+            sums[self.walled] += weight * dot(nearing, apart)
+            pair = ti.static(Pair(jb, lane, apart, square, t, weight, volume, 0, weight, apart, []))
+            for term in ti.static(self.of_walls):
+                term.add_wall(block, pair, sums)
+
+    @ti.func
+    def end(self, block: ti.template(), dt, sums: ti.template()):
+        """Store the rates of a block; returns as `pass_block`."""
+        p, c, s, gas, factor = self.particles, self.constants, block.s, block.gas, self.constants.get("slope")
+        walled, closed, evened = sums[self.walled], p.zeros(), p.zeros()
+        if ti.static(self.corrects):
+            closed += sums[self.closing.closed] * c.get("value")
         if ti.static(c.two):  # air meets its mirror image at walls, see `solvers.fluid.phases.interfaces`
             walled *= 1.0 + gas
-            closed = (1.0 - gas) * closed + gas * (c.get("slope") * slid)
-        factor = c.get("slope")
-        evened *= factor * c.of("spread", gas)
-        rate, rate_of_walls = (1.0 + s) * (factor * opened) + evened, (1.0 + s) * (factor * walled + closed)
-        p.store(p.rate, b, rate)
-        p.store(p.rate_of_walls, b, rate_of_walls)
-        if ti.static(c.shifting.carries):
-            flux = p.load(p.volume, b) * (factor * c.get("density"))
-            for a in ti.static(range(p.axes)):
-                p.store(p.carried[a], b, flux * carried[a])
-        pressure, more = p.load(p.pressure, b), (0.5 * dt) * (rate + rate_of_walls)
+            closed = (1.0 - gas) * closed
+            if ti.static(self.slides):
+                closed += gas * (factor * sums[self.slid.slid])
+        if ti.static(c.diffusion.acts):
+            evened += sums[self.diffusion.evened] * (factor * c.of("spread", gas))
+        rate = (1.0 + s) * (factor * sums[self.opened]) + evened
+        rate_of_walls = (1.0 + s) * (factor * walled + closed)
+        p.store(p.rate, block.b, rate)
+        p.store(p.rate_of_walls, block.b, rate_of_walls)
+        pressure, more = p.load(p.pressure, block.b), (0.5 * dt) * (rate + rate_of_walls)
         if ti.static(self.voids.acts):
-            after = self.voids.stepped(b, s, rate, rate_of_walls, p.ones() * dt)
+            after = self.voids.stepped(block.b, s, rate, rate_of_walls, p.ones() * dt)
             evened += (after - s) * (1.0 / dt) - (rate + rate_of_walls)
             change = (0.5 * c.get("stiffness")) * (c.state.share(after) - c.state.share(s))
             pressure += (1.0 - gas) * change if ti.static(c.two) else change
@@ -131,23 +144,8 @@ class Continuity:
             pressure += (1.0 - gas) * (c.get("stiffness") * more)
         else:
             pressure += c.get("stiffness") * (c.state.share(s + more) - c.state.share(s))
-        power = pressure * p.load(p.mass, b) / p.borne(b, (1.0 + s) * (1.0 + s) * c.of("density", gas))
-        by_walls = (1.0 + s) * closed
+        density = p.borne(block.b, (1.0 + s) * (1.0 + s) * c.of("density", gas))
+        power, by_walls = pressure * p.load(p.mass, block.b) / density, (1.0 + s) * closed
         powers = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(2))])
         powers[0], powers[1] = ti.cast((evened * power).sum(), p.exact), ti.cast((by_walls * power).sum(), p.exact)
         return powers
-
-    @ti.func
-    def tank_speed(self, w, axis: ti.template()):
-        """The velocity (m/s) of the tank's origin along its own axis, in the middle of the step."""
-        speed = ti.cast(0.0, self.particles.exact)
-        if ti.static(self.poses.moving):
-            speed = self.poses.walls[axis][w]
-        return speed
-
-    @ti.func
-    def down(self, w, axis: ti.template()):
-        """Direction of gravity along an axis of the tank, at the start of the step."""
-        pull = [self.poses.felt[a][w] for a in ti.static(range(2))]
-        size = ti.max(ti.sqrt(dot(pull, pull)), 1e-12)
-        return ti.cast(pull[axis] / size, self.particles.real)

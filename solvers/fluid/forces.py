@@ -4,9 +4,17 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists.context import FluidContext
+from solvers.fluid.phases.cohesion import CohesionForce
+from solvers.fluid.phases.interfaces import InterfaceForce
 from solvers.fluid.phases.tension import Tension
-from solvers.fluid.state import INSIDE, SPRAY
 from solvers.fluid.surface.void_indicator import VoidIndicator
+from solvers.fluid.terms.balance import Balance
+from solvers.fluid.terms.phase_gradient import PhaseGradient
+from solvers.fluid.terms.renormalisation import Renormalisation
+from solvers.fluid.terms.shift import Shift
+from solvers.fluid.terms.surface_normal import SurfaceNormal
+from solvers.fluid.terms.term import Block, Pair, Sums, Term, doing
+from solvers.fluid.terms.viscous_force import ViscousForce
 from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.wall_forces import WallForces
@@ -14,9 +22,6 @@ from solvers.machine.state import State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
 from solvers.tank.load import Load
-
-SINGULAR = 0.05  # smallest eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
-NEAR = 1e-3  # of (2 h)² times the squared gradient of the phase: from there on the other phase is near
 
 
 @ti.data_oriented
@@ -34,18 +39,42 @@ class Forces:
     def __init__(self, arrays: State, context: FluidContext, walls: Extrapolation, load: Load, thickness: float):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
-        self.voids = VoidIndicator(arrays, context.particles, context.constants)
-        self.walls, self.load = WallForces(context, walls, self.voids), load
+        self.sums = Sums()
+        self.balance, self.load = Balance(self.sums, context.particles.axes), load
+        terms = self._terms(arrays)
+        self.walls = WallForces(context, walls, self.sums, self.balance, doing(terms, "add_wall"))
+        terms.append(self.walls.push)
+        self.beginning, self.adding, self.ending = (doing(terms, part) for part in ("begin", "add", "end"))
         self.bodies, self.end_walls = context.lists.bodies, EndWallFriction(context.particles, context.constants)
         own = arrays.under("water.forces")
         self.counts = own.reals((context.units.axis,), "dissipated", "stored", "wall_work", kind=own.exact)
         self.dissipated, self.stored, self.wall_work = self.counts
         names = "dissipated_lately", "stored_lately", "wall_work_lately"  # the powers (W/m) of the last step
         self.powers = own.reals((context.units.axis,), *names, kind=own.exact)
-        self.sums = *self.counts, *self.powers
+        self.kept = *self.counts, *self.powers
         self.order, self.outlines = context.lists.order, context.lists.order.layers
-        self.tension = Tension(context.particles, context.constants)
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
+
+    def _terms(self, arrays: State) -> list[Term | None]:
+        """The terms that the scene needs, in the order in which they add."""
+        p, c, sums, balance = self.particles, self.constants, self.sums, self.balance
+        phase = PhaseGradient(sums, p, c) if c.two and (c.shifting.acts or c.tense) else None
+        normal = SurfaceNormal(sums, p, c) if c.shifting.acts and not (c.full or c.two) else None
+        self.tension = Tension(sums, balance, p, c, phase) if c.tense else None
+        matrix = Renormalisation(sums, p, c)
+        self.voids = VoidIndicator(arrays, sums, p, c, matrix)
+        return [
+            Shift(sums, p, c, phase or normal) if c.shifting.acts else None,
+            normal,
+            InterfaceForce(p, c) if c.two else None,
+            CohesionForce(c) if c.coheres else None,
+            self.tension,
+            phase,
+            ViscousForce(balance, p, c) if c.viscous else None,
+            self.voids.dispersed if self.voids.dispersed.acts else None,
+            self.voids if self.voids.acts else None,
+            matrix,
+        ]
 
     def counted(self, behind: np.ndarray) -> list[np.ndarray]:
         """`dissipated`, `stored` and `wall_work` (W,) J/m up to now, if the last kick was `behind` (W,) s ago."""
@@ -131,170 +160,89 @@ class Forces:
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
-        pressure, s, gas = p.load(p.pressure, b), p.load(p.deviation, b), p.gases(b)
-        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.strength()
-        push = [p.zeros() for _ in ti.static(range(p.axes))]
+        pressure, s, gas, shrink = p.load(p.pressure, b), p.load(p.deviation, b), p.gases(b), c.get("shrink")
+        block = ti.static(Block(u, b, kick, origin, own, speed, pressure, s, gas))
+        sums = [p.zeros() for _ in ti.static(range(self.sums.count))]
         wall = [p.zeros() for _ in ti.static(range(p.axes))]
-        own_push = [p.zeros() for _ in ti.static(range(p.axes))]  # of the wall particles' own pressures
-        drag = [p.zeros() for _ in ti.static(range(p.axes))]  # of viscosity
-        gradient = [p.zeros() for _ in ti.static(range(p.axes))]
-        shift = [p.zeros() for _ in ti.static(range(p.axes))]
-        inwards = [p.zeros() for _ in ti.static(range(p.axes))]
-        stress = [p.zeros() for _ in ti.static(range(3))]
-        if ti.static(c.tense):
-            self.tension.load(b, stress)
-        eigenvalue, least = p.ones(), p.ones()
-        if ti.static(c.shifting.acts):
-            eigenvalue = p.load(p.eigenvalue_before, b)
-        yy, yz, zz, viscous, stored = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
-        fill = [p.zeros() for _ in ti.static(range(self.voids.sums))]  # of `VoidIndicator`
+        for term in ti.static(self.beginning):
+            term.begin(block, sums)
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
             apart = lists.apart(own, origin, j)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            weight = p.volume[jb, lane] * lists.visible(b, j, apart, AT_START) * c.kernel.slope(t)
-            if ti.static(c.shifting.acts):
-                crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
-                for a in ti.static(range(p.axes)):
-                    shift[a] += crowded * apart[a]
-                if ti.static(not (c.full or c.two)):
-                    deeper = p.eigenvalue_before[jb, lane] - eigenvalue
-                    least = ti.min(least, ti.select(weight > 0.0, p.ones() * p.eigenvalue_before[jb, lane], p.ones()))
-                    for a in ti.static(range(p.axes)):
-                        inwards[a] = inwards[a] - (deeper * weight) * apart[a]
-            along = (pressure + p.pressure[jb, lane]) * weight
-            other, heavy = gas - p.gas_at(jb, lane), weight  # `heavy`: as strong as the viscosity of the two
+            volume = p.volume[jb, lane] * lists.visible(b, j, apart, AT_START)
+            weight = volume * c.kernel.slope(t)
+            other, within = gas - p.gas_at(jb, lane), weight
             if ti.static(c.two):
-                along += (c.get("lean_of_pressure") * other) * (pressure - p.pressure[jb, lane]) * weight
-                if ti.static(c.coheres):
-                    along += (gas * c.get("cohesion")) * c.cohesion.push(s) * weight
-                heavy = weight * c.drag(gas, p.gas[jb, lane])
-                if ti.static(c.tense):
-                    self.tension.add(stress, jb, lane, weight, apart, push)
-                if ti.static(c.shifting.acts or c.tense):
-                    for a in ti.static(range(p.axes)):
-                        inwards[a] += (other * weight) * apart[a]
-            if ti.static(c.viscous):
-                nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                if ti.static(c.viscosity.central):
-                    closing = dot(nearing, apart)
-                    pull = heavy * c.viscosity.pull(closing, square + floor)
-                    viscous += pull * closing
-                    for a in ti.static(range(p.axes)):
-                        drag[a] += pull * apart[a]
-                else:
-                    viscous += heavy * dot(nearing, nearing)
-                    for a in ti.static(range(p.axes)):
-                        drag[a] += heavy * nearing[a]
-            self.voids.dispersed.add(fill, other * other, t, weight * square, jb, lane)
-            if ti.static(c.two):  # from here on within a phase
-                weight *= 1.0 - other * other
-            weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
+                within = weight * (1.0 - other * other)
+            steep = [(within * apart[a]) for a in ti.static(range(p.axes))]
+            along = [(pressure + p.pressure[jb, lane]) * weight]
+            pair = ti.static(Pair(jb, lane, apart, square, t, weight, volume, other, within, steep, along))
+            for term in ti.static(self.adding):
+                term.add(block, pair, sums)
             for a in ti.static(range(p.axes)):
-                push[a] += along * apart[a]
-                if ti.static(self.voids.acts):
-                    fill[a] += weighted[a]
-            if ti.static(self.constants.diffusion.renormalised):
-                more = p.deviation[jb, lane] - s
-                for a in ti.static(range(p.axes)):
-                    gradient[a] = gradient[a] - more * weighted[a]
-            yy += weighted[0] * apart[0]
-            yz += weighted[0] * apart[1]
-            zz += weighted[1] * apart[1]
-        viscous *= 0.5
+                sums[self.balance.push + a] += along[0] * apart[a]
+        sums[self.balance.taken] *= 0.5
         if ti.static(p.wall_blocks > 0):
-            begin = listed * lists.pieces
-            if ti.static(lists.pieces == 1):
-                ends = [lists.beside.first[u, begin], lists.beside.first[u, begin + 1]]
-                self.walls.add(
-                    u, b, 0, ends, own, origin, speed, pressure, wall, own_push, shift, fill, [viscous, stored]
-                )
-            else:
-                for piece in range(lists.pieces):
-                    ends = [lists.beside.first[u, begin + piece], lists.beside.first[u, begin + piece + 1]]
-                    off = [p.zeros() for _ in ti.static(range(p.axes))]
-                    self.walls.add(
-                        u, b, piece, ends, own, origin, speed, pressure, off, own_push, shift, fill, [viscous, stored]
-                    )
-                    for a in ti.static(range(p.axes)):
-                        wall[a] += off[a]
-                    if piece > 0 and ends[0] < ends[1]:
-                        force = p.load(p.volume, b) * c.get("slope")
-                        load = self.walls.on_walls(b, origin, own, [force * off[a] for a in ti.static(range(p.axes))])
-                        self.bodies.bear(u, piece - 1, load)
-        factor, density = c.get("slope"), c.of("density", gas)
-        lightness = (p.filled(b) * factor) / p.borne(b, density * (1.0 + s))
+            self.add_walls(block, listed, wall, sums)
+        return self.accelerate(block, wall, sums)
+
+    @ti.func
+    def add_walls(self, block: ti.template(), listed, wall: ti.template(), sums: ti.template()):
+        """Add what walls do to a block; each part in the tank bears its own."""
+        p, c, lists, begin = self.particles, self.constants, self.lists, listed * self.lists.pieces
+        first = ti.static(self.lists.beside.first)
+        if ti.static(lists.pieces == 1):
+            ends = [first[block.u, begin], first[block.u, begin + 1]]
+            self.walls.add(block, 0, ends, wall, sums)
+        else:
+            for piece in range(lists.pieces):
+                ends = [first[block.u, begin + piece], first[block.u, begin + piece + 1]]
+                off = [p.zeros() for _ in ti.static(range(p.axes))]
+                self.walls.add(block, piece, ends, off, sums)
+                for a in ti.static(range(p.axes)):
+                    wall[a] += off[a]
+                if piece > 0 and ends[0] < ends[1]:
+                    force = p.load(p.volume, block.b) * c.get("slope")
+                    load = self.walls.on_walls(block, [force * off[a] for a in ti.static(range(p.axes))])
+                    self.bodies.bear(block.u, piece - 1, load)
+
+    @ti.func
+    def accelerate(self, block: ti.template(), wall: ti.template(), sums: ti.template()):
+        """Store the accelerations of a block, and what its terms end in; returns as `pass_block`."""
+        p, c, b = self.particles, self.constants, block.b
+        factor, strength, density = c.get("slope"), c.strength(), c.of("density", block.gas)
+        lightness = (p.filled(b) * factor) / p.borne(b, density * (1.0 + block.s))
         past = [p.zeros() for _ in ti.static(range(p.axes))]  # the walls before and behind
         hold = [p.zeros() for _ in ti.static(range(p.axes))]  # their drag
         if ti.static(c.end_walls):
-            self.walls.note_past(u, b, origin, own, speed, past)
-            self.end_walls.drag(b, past, kick, hold)
+            self.walls.note_past(block, past)
+            self.end_walls.drag(b, past, block.kick, hold)
+        taken, stored = sums[self.balance.taken], sums[self.balance.stored]
         for a in ti.static(range(p.axes)):
-            acceleration = lightness * (push[a] + strength * drag[a] + wall[a]) - hold[a]
+            drag, own_push = sums[self.balance.drag + a], sums[self.balance.own_push + a]
+            acceleration = lightness * (sums[self.balance.push + a] + strength * drag + wall[a]) - hold[a]
             p.store(p.acceleration[a], b, acceleration)
             # Velocities are half a kick behind the places at which the wall particles push.
-            gain = acceleration + self.walls.weight(u, b, a)
-            stored = stored - own_push[a] * (speed[a] + (0.5 * kick) * gain)
-            viscous = viscous - drag[a] * ((0.5 * kick) * gain)
-            past[a] += (0.5 * kick) * gain
+            gain = acceleration + self.walls.weight(block.u, b, a)
+            stored = stored - own_push * (block.speed[a] + (0.5 * block.kick) * gain)
+            taken = taken - drag * ((0.5 * block.kick) * gain)
+            past[a] += (0.5 * block.kick) * gain
         if ti.static(self.poses.moving and not self.bodies.moving):
-            wall_speed = self.walls.walls_at(self.units.world(u), origin, own)
-            stored += dot(own_push, wall_speed)
-        if ti.static(c.tense):
-            self.tension.note(b, [factor * inwards[a] for a in ti.static(range(p.axes))])
-        if ti.static(c.shifting.acts):
-            self.note_shift(b, shift, inwards, least, eigenvalue)
-        self.invert(b, factor * yy, factor * yz, factor * zz, [factor * gradient[a] for a in ti.static(range(p.axes))])
-        if ti.static(self.voids.acts):
-            self.voids.note(b, yy + zz, fill)
+            wall_speed = self.walls.walls_at(self.units.world(block.u), block.origin, block.own)
+            stored += dot([sums[self.balance.own_push + a] for a in ti.static(range(p.axes))], wall_speed)
+        for term in ti.static(self.ending):
+            term.end(block, sums)
         volume = p.load(p.volume, b) * factor
-        force = self.walls.borne(u, b, [volume * wall[a] for a in ti.static(range(p.axes))])
-        taken = strength * volume * viscous
+        force = self.walls.borne(block.u, b, [volume * wall[a] for a in ti.static(range(p.axes))])
+        power = strength * volume * taken
         if ti.static(c.end_walls):
-            taken += p.load(p.mass, b) * dot(hold, past)
+            power += p.load(p.mass, b) * dot(hold, past)
             for a in ti.static(range(p.axes)):
                 force[a] = force[a] - p.load(p.mass, b) * hold[a]
-        total = self.walls.on_walls(b, origin, own, force)
-        total[3] = ti.cast(taken.sum(), p.exact)
+        total = self.walls.on_walls(block, force)
+        total[3] = ti.cast(power.sum(), p.exact)
         total[4] = ti.cast((volume * stored).sum(), p.exact)
         return total
-
-    @ti.func
-    def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, eigenvalue):
-        """Store the velocity with which the particles of a block are shifted; see `DeltaPlus`.
-
-        A full tank has no free surface: what lacks water near it, lacks it at a wall, whose particles stand for it.
-        """
-        p, c = self.particles, self.constants
-        along, lasting = p.zeros(), p.filled(b)
-        steep = ti.max(dot(inwards, inwards), 1e-30)
-        if ti.static(c.two):  # `inwards` is the gradient of the phase: there is a surface where there are two
-            near = c.get("slope") * c.get("reach")
-            along = ti.select(steep * (near * near) > NEAR, dot(shift, inwards) / steep, p.zeros())
-        elif ti.static(not c.full):
-            along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
-            lasting = ti.select(eigenvalue < SPRAY, p.zeros(), lasting)
-            if ti.static(c.shifting.carries):
-                lasting = ti.select(least < INSIDE, p.zeros(), lasting)
-        moved = [lasting * c.get("shift") * (shift[a] - along * inwards[a]) for a in ti.static(range(p.axes))]
-        fast = ti.sqrt(dot(moved, moved))
-        limited = ti.min(1.0, c.get("shift_most") / ti.max(fast, 1e-30))
-        for a in ti.static(range(p.axes)):
-            p.store(p.shift[a], b, limited * moved[a])
-
-    @ti.func
-    def invert(self, b, yy, yz, zz, gradient: ti.template()):
-        """Store the smallest eigenvalue of the matrix Σ V_j r_ji ⊗ ∇W, and its inverse times the raw gradient."""
-        p = self.particles
-        middle, apart = 0.5 * (yy + zz), 0.5 * (yy - zz)
-        eigenvalue = middle - ti.sqrt(apart * apart + yz * yz)
-        p.store(p.eigenvalue, b, eigenvalue)
-        if ti.static(self.constants.diffusion.renormalised):
-            regular = eigenvalue > SINGULAR
-            determinant = ti.select(regular, yy * zz - yz * yz, p.ones())
-            along_y = (zz * gradient[0] - yz * gradient[1]) / determinant
-            along_z = (yy * gradient[1] - yz * gradient[0]) / determinant
-            p.store(p.gradient[0], b, ti.select(regular, along_y, p.zeros()))
-            p.store(p.gradient[1], b, ti.select(regular, along_z, p.zeros()))

@@ -225,7 +225,7 @@ class WaterMatter(Matter):
         start = self.laying.lay(position) if self.laying else self.fluid.particles
         p.put(start, self.water, self.fluid.present)
         p.put_walls(*self.wall_points, self.bodies.solids)
-        lists, sums = self.lists, (*self.forces.sums, self.continuity.diffused, self.diagnostics.behind)
+        lists, sums = self.lists, (*self.forces.kept, self.continuity.diffused, self.diagnostics.behind)
         for field in (*sums, lists.last, lists.skin):
             field.fill(0.0)
         lists.expire()

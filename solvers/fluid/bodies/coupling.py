@@ -4,7 +4,8 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists.context import FluidContext
-from solvers.fluid.walls.tangential_correction import TangentialCorrection
+from solvers.fluid.terms.term import Sums, Term
+from solvers.fluid.walls.tangential_correction import Leaning, TangentialCorrection
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
 from solvers.motion.free import HELD, INERTIA, MASS
@@ -17,7 +18,7 @@ OF_LOAD = ("y", "z", "turn")
 
 
 @ti.data_oriented
-class FreeBodyCoupling:
+class FreeBodyCoupling(Term):
     """(M + A) a = F: a free body and the water before it, solved together for the acceleration a of the body.
 
     A wall particle w of a body that is accelerated by a_w has the pressure p_w = p0 − q·a_w, with q = Σ m_f W (r_w −
@@ -39,21 +40,23 @@ class FreeBodyCoupling:
     def __init__(
         self,
         arrays: State,
+        sums: Sums,
         context: FluidContext,
-        tangential: TangentialCorrection,
-        load: Load,
-        thickness: float,
+        of_walls: tuple[TangentialCorrection, Leaning],
+        borne: tuple[Load, float],
         sticks: bool,
     ):
+        """`borne` is the water's load, and the tank's thickness (m)."""
         self.units, self.particles, self.constants = context.units, context.particles, context.constants
-        self.poses, self.bodies, self.tangential = context.poses, context.lists.bodies, tangential
-        self.free, self.load = self.bodies.pieces.bodies, load
+        self.poses, self.bodies, (self.tangential, self.leaning) = context.poses, context.lists.bodies, of_walls
+        self.free, (self.load, thickness) = self.bodies.pieces.bodies, borne
         self.acts = self.bodies.floats
         self.before = (Phase(self.solve),) if self.acts else ()
         self.between = (Phase(self.note_rest),) if self.acts and sticks else ()
         if not self.acts:
             return
         p, own = self.particles, arrays.under("water.coupling")
+        self.way, self.always, self.firm = sums.room(p.axes), sums.room(p.axes), sums.room()
         self.thickness = own.holding("thickness", np.array([thickness]), "one", own.exact)
         each = Axis("block", p.worlds * self.bodies.room), Axis("lane", p.lanes)
         (self.still,) = own.wide(each, "still", kept=False)  # the pressure p0 at a = 0, cut off nowhere; Pa
@@ -77,26 +80,25 @@ class FreeBodyCoupling:
             self.rest.fill(0.0)
 
     @ti.func
-    def fixed_push(self, square: ti.template(), slope: ti.template(), pressure, firm: ti.template()):
-        """What a particle of water of a `pressure` pushes a block of wall particles by besides, as of `WallForces`."""
-        c, none = self.constants, ti.cast(0.0, self.particles.real)
-        return c.clipped(pressure, none) * slope + c.hardness(square, firm, self.particles.zeros())
+    def begin(self, b, sums: ti.template()):
+        """Begin with how far (m) a block of wall particles is from its wall's face."""
+        sums[self.firm] = self.particles.load(self.particles.firm, b)
 
     @ti.func
-    def note(
-        self,
-        b,
-        still: ti.template(),
-        lever: ti.template(),
-        steep: ti.template(),
-        fixed: ti.template(),
-        before: ti.template(),
-        seen: ti.template(),
-    ):
+    def add(self, b, seen: ti.template(), sums: ti.template()):
+        """Add a particle before a block of walls: the way from it, and what it pushes besides, as of `WallForces`."""
+        p, c, none = self.particles, self.constants, ti.cast(0.0, self.particles.real)
+        hard = c.hardness(seen.square, sums[self.firm], p.zeros())
+        always = c.clipped(p.pressure[seen.jb, seen.lane], none) * seen.slope + hard
+        for a in ti.static(range(p.axes)):
+            sums[self.way + a] += (seen.weight * seen.volume) * seen.apart[a]
+            sums[self.always + a] = sums[self.always + a] - (seen.visible * (seen.volume * always)) * seen.apart[a]
+
+    @ti.func
+    def note(self, b, still: ti.template(), lever: ti.template(), seen: ti.template(), sums: ti.template()):
         """Note what a block of wall particles of a free body is to its load, from the sums of `Extrapolation`.
 
-        `still` is p0 (Pa) and `lever` q, both zero of those that see no water; `steep` is Σ V_f (−W'/r) (r_f − r_w),
-        `fixed` the like of `fixed_push`, `before` the mean way from the water before it, `seen` Σ V_f W.
+        `still` is p0 (Pa) and `lever` q, both zero of those that see no water; `seen` is Σ V_f W.
         """
         p, w, row = self.particles, b // self.particles.stride, self.bodies.row(b)
         at = w * self.bodies.room + row
@@ -111,14 +113,16 @@ class FreeBodyCoupling:
                 for a in ti.static(range(p.axes)):
                     whole[a] = whole[a] - slid * along[a]
             force = 0.0 - p.load(p.volume, b) * self.constants.get("slope")
+            steep = self.leaning.steep(sums)
             straight = [force * steep[a] for a in ti.static(range(p.axes))]
             turning = arm[0] * straight[1] - arm[1] * straight[0]
             if ti.static(self.tangential.acts):
                 off = [(force * seen) * p.load(self.tangential.correction[a], b) for a in ti.static(range(p.axes))]
+                before = [sums[self.way + a] / ti.max(seen, 1e-30) for a in ti.static(range(p.axes))]
                 turning = turning - ((arm[0] - before[0]) * off[1] - (arm[1] - before[1]) * off[0])
                 for a in ti.static(range(p.axes)):
                     straight[a] = straight[a] - off[a]
-            always = [force * fixed[a] for a in ti.static(range(p.axes))]
+            always = [force * sums[self.always + a] for a in ti.static(range(p.axes))]
             p.store(self.still, at, still)
             for a in ti.static(range(p.axes)):
                 p.store(self.lever[a], at, whole[a])
@@ -133,7 +137,7 @@ class FreeBodyCoupling:
         """Solve for the acceleration of each free body of a world, and give its wall particles their pressures."""
         for i in range(self.free.count):
             if self.free.state[w, i] != HELD:
-                self.begin(w, i)
+                self.begin_solution(w, i)
                 solved, changed = 0, True
                 while changed:
                     changed = self.sum_up(w, i, solved == 0)
@@ -146,7 +150,7 @@ class FreeBodyCoupling:
                 self.carry(w, i)
 
     @ti.func
-    def begin(self, w, i):
+    def begin_solution(self, w, i):
         """Begin with the acceleration of the last step."""
         for k in ti.static(range(3)):
             self.solution[w, i, k] = self.free.acceleration[k][w, i]

@@ -3,6 +3,8 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.terms.term import Term
+
 STRENGTH = 1.5  # of ρ g L
 
 
@@ -63,3 +65,17 @@ class Cohesion:
     def energy(s):
         """∫ (X − a ρ²)/ρ² dρ in units of X/ρ_a, −s²/(1 + s)."""
         return (0.0 - s) * s / (1.0 + s)
+
+
+@ti.data_oriented
+class CohesionForce(Term):
+    """2 a ρ_i² between a particle of air and all neighbours, walls too."""
+
+    def __init__(self, constants):
+        self.constants = constants
+
+    @ti.func
+    def add(self, block: ti.template(), pair: ti.template(), sums: ti.template()):
+        """Add a neighbour."""
+        c = self.constants
+        pair.along[0] += (block.gas * c.get("cohesion")) * c.cohesion.push(block.s) * pair.weight

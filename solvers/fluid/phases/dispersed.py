@@ -4,6 +4,7 @@ import taichi as ti
 
 from solvers.fluid.phases.adiabatic import GAMMA
 from solvers.fluid.state import Particles
+from solvers.fluid.terms.term import Sums, Term
 from solvers.machine.state import Axis, State
 
 FAINT = 0.02  # of full coverage by the other phase: what sees less of it has none about it
@@ -13,7 +14,7 @@ ALONE = 0.5  # F of air without walls below which it is such a bubble: four spac
 
 
 @ti.data_oriented
-class Dispersed:
+class Dispersed(Term):
     """p_i → Σ V_j p_j W / Σ V_j W over the other phase j, at the rate c/h, where the own phase is broken.
 
     A drop or a bubble below the spacing has no pressure of its own: that of both phases relaxes to one, as soon as
@@ -38,22 +39,27 @@ class Dispersed:
     Units: p Pa, c m/s, h m, ρ kg/m³.
     """
 
-    def __init__(self, arrays: State, particles: Particles, constants):
+    def __init__(self, arrays: State, sums: Sums, particles: Particles, constants):
         self.particles, self.constants = particles, constants
         self.acts = constants.two and not (constants.full or constants.tense or constants.coheres)
         if self.acts:
             each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
             (self.rest,) = arrays.under("water").wide(each, "rest", kept=False)
+            self.seen, self.pressed, self.beside = sums.room(), sums.room(), sums.room()
 
     @ti.func
-    def add(self, sums: ti.template(), beside: ti.template(), t, trace, jb, lane):
-        """Add what a neighbour of the other phase, where `beside` is 1, gives to Σ V W, Σ V p W and the trace of it."""
-        p = self.particles
-        if ti.static(self.acts):
-            seen = beside * p.volume[jb, lane] * self.constants.kernel.value(t)
-            sums[p.axes + 1] += seen
-            sums[p.axes + 2] += seen * p.pressure[jb, lane]
-            sums[p.axes + 3] += beside * trace
+    def add(self, block: ti.template(), pair: ti.template(), sums: ti.template()):
+        """Add what a neighbour of the other phase gives to Σ V W, Σ V p W and the trace of it."""
+        p, beside = self.particles, pair.other * pair.other
+        seen = beside * p.volume[pair.jb, pair.lane] * self.constants.kernel.value(pair.t)
+        sums[self.seen] += seen
+        sums[self.pressed] += seen * p.pressure[pair.jb, pair.lane]
+        sums[self.beside] += beside * (pair.weight * pair.square)
+
+    @ti.func
+    def trace(self, sums: ti.template()):
+        """Σ V (−W'/r) r² over the other phase."""
+        return sums[self.beside]
 
     @ti.func
     def borne(self, pressure):
@@ -64,10 +70,11 @@ class Dispersed:
         return found
 
     @ti.func
-    def note(self, b, seen, pressed):
-        """Store `rest` of a block, from Σ V W and Σ V p W over the other phase, without the kernel's factor."""
-        p, c = self.particles, self.constants
-        touched, over = seen * c.get("value") > FAINT, pressed / ti.max(seen, 1e-30) - c.get("background")
+    def end(self, block: ti.template(), sums: ti.template()):
+        """Store `rest` of a block."""
+        p, c, b = self.particles, self.constants, block.b
+        touched = sums[self.seen] * c.get("value") > FAINT
+        over = sums[self.pressed] / ti.max(sums[self.seen], 1e-30) - c.get("background")
         of_water = ti.max(over * (1.0 / c.get("stiffness")), c.get("thinnest"))
         p.store(self.rest, b, ti.select(touched, of_water, p.ones() * c.get("thinnest")))
         for lane in range(p.lanes):

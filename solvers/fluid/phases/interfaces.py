@@ -4,7 +4,10 @@ The pair's pressure is p_i + p_j + κ d (p_i − p_j), its velocity (1 + λ d) (
 water j, −1 for water i beside air j, 0 within a phase. Both are symmetric, so that forces are equal and opposite.
 """
 
+import taichi as ti
+
 from solvers.fluid.phases.cohesion import Cohesion
+from solvers.fluid.terms.term import Term
 
 
 class Weighted:
@@ -55,3 +58,17 @@ class Plain:
 
 
 INTERFACES = {"weighted": Weighted, "hu-adams": HuAdams, "plain": Plain, "cohesion": Cohesion}
+
+
+@ti.data_oriented
+class InterfaceForce(Term):
+    """κ d (p_i − p_j), by which the pressure between a particle of water and one of air leans."""
+
+    def __init__(self, particles, constants):
+        self.particles, self.constants = particles, constants
+
+    @ti.func
+    def add(self, block: ti.template(), pair: ti.template(), sums: ti.template()):
+        """Add a neighbour of the other phase."""
+        apart = block.pressure - self.particles.pressure[pair.jb, pair.lane]
+        pair.along[0] += (self.constants.get("lean_of_pressure") * pair.other) * apart * pair.weight

@@ -6,6 +6,8 @@ import taichi as ti
 from solvers.fluid.phases.dispersed import Dispersed
 from solvers.fluid.state import SPRAY, Particles
 from solvers.fluid.surface.reinitialisation import Reinitialisation
+from solvers.fluid.terms.renormalisation import Renormalisation
+from solvers.fluid.terms.term import Sums, Term
 from solvers.machine.state import Axis, State
 from solvers.space.axes import dot
 
@@ -14,7 +16,7 @@ RAMP = 0.05  # of F, over which the relief grows to all of c0/h
 
 
 @ti.data_oriented
-class VoidIndicator:
+class VoidIndicator(Term):
     """F = ½ Σ V (−W'/r) r² + b |Σ V ∇W|, over water and wall particles: 1 where water is packed, at its surface too.
 
     The first sum is half the trace of the matrix of Randles & Libersky (1996); it is 1 within packed water and ½ at a
@@ -38,11 +40,12 @@ class VoidIndicator:
     Units: V m², W 1/m², r, b and h m.
     """
 
-    def __init__(self, arrays: State, particles: Particles, constants):
-        self.particles, self.constants = particles, constants
-        self.dispersed = Dispersed(arrays, particles, constants)
+    def __init__(self, arrays: State, sums: Sums, particles: Particles, constants, matrix: Renormalisation):
+        self.particles, self.constants, self.matrix = particles, constants, matrix
+        self.dispersed = Dispersed(arrays, sums, particles, constants)
         self.acts = self.dispersed.acts or not (constants.full or constants.two)
-        self.sums = 1 + particles.axes + (3 if self.dispersed.acts else 0)
+        if self.acts:
+            self.lean, self.by_walls = sums.room(particles.axes), sums.room()
         self.reinitialisation = Reinitialisation(arrays, particles, constants, self.acts)
         if self.acts:
             each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
@@ -59,25 +62,34 @@ class VoidIndicator:
         }
 
     @ti.func
-    def note(self, b, trace, sums: ti.template()):
-        """Store F of a block, from its sums without the slope's factor.
+    def add(self, block: ti.template(), pair: ti.template(), sums: ti.template()):
+        """Add a neighbour's Σ V (−W'/r)(r_i − r_j) over the own phase; its half trace is that of `Renormalisation`."""
+        for a in ti.static(range(self.particles.axes)):
+            sums[self.lean + a] += pair.steep[a]
 
-        `trace` is Σ V (−W'/r) r² over the own phase; `sums` are Σ V (−W'/r)(r_j − r_i) over it and walls, of water, the
-        walls' trace, and of the other phase Σ V W, Σ V p W and its trace.
-        """
-        p, c, gas = self.particles, self.constants, self.particles.gases(b)
-        lean = [sums[a] for a in ti.static(range(p.axes))]
+    @ti.func
+    def add_wall(self, block: ti.template(), pair: ti.template(), sums: ti.template()):
+        """Add a wall particle, which is no part of the air."""
+        sums[self.by_walls] += pair.weight * pair.square
+        for a in ti.static(range(self.particles.axes)):
+            off = pair.weight * pair.apart[a]
+            sums[self.lean + a] += (1.0 - block.gas) * off if ti.static(self.constants.two) else off
+
+    @ti.func
+    def end(self, block: ti.template(), sums: ti.template()):
+        """Store F of a block, and what follows from it."""
+        p, c, b = self.particles, self.constants, block.b
+        lean = [sums[self.lean + a] for a in ti.static(range(p.axes))]
         lacking = c.get("plane") * ti.sqrt(dot(lean, lean))
-        both = trace + sums[p.axes]
-        own = both - gas * sums[p.axes] if ti.static(c.two) else both
+        both = self.matrix.trace(sums) + sums[self.by_walls]
+        own = both - block.gas * sums[self.by_walls] if ti.static(c.two) else both
         indicator = c.get("slope") * (0.5 * own + lacking)
         p.store(self.indicator, b, indicator)
         if ti.static(self.dispersed.acts):
-            self.dispersed.note(b, sums[p.axes + 1], sums[p.axes + 2])
-            whole = (0.5 * c.get("slope")) * (both + sums[p.axes + 3])
-            indicator, lacking = (1.0 - gas) * indicator + gas * whole, (1.0 - gas) * lacking
+            whole = (0.5 * c.get("slope")) * (both + self.dispersed.trace(sums))
+            indicator, lacking = (1.0 - block.gas) * indicator + block.gas * whole, (1.0 - block.gas) * lacking
         if ti.static(self.reinitialisation.acts):
-            self.reinitialisation.note(b, indicator, c.get("slope") * lacking, gas)
+            self.reinitialisation.note(b, indicator, c.get("slope") * lacking, block.gas)
 
     @ti.func
     def stepped(self, b, s, rate, rate_of_walls, step):

@@ -6,7 +6,10 @@ It is the adjoint of the extrapolation of their pressures.
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.constants import Constants
 from solvers.fluid.lists.context import FluidContext
+from solvers.fluid.state import Particles
+from solvers.fluid.terms.term import Sums, Term
 from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.state import State, padded
 from solvers.motion.poses import AT_MIDDLE
@@ -104,3 +107,17 @@ class DivergenceCorrection:
         pressure = p.load(p.pressure, b)
         acts = ti.select(pressure * pressure > 0.0, p.ones(), p.zeros())
         p.store(p.rate, b, acts * ((c.get("slope") / c.get("value")) * (closed * few)))
+
+
+@ti.data_oriented
+class Closing(Term):
+    """Σ V_w W C_w of the wall particles beside a block of water: how fast it is closed on, without W's factor."""
+
+    def __init__(self, sums: Sums, particles: Particles, constants: Constants):
+        self.particles, self.constants, self.closed = particles, constants, sums.room()
+
+    @ti.func
+    def add_wall(self, block: ti.template(), pair: ti.template(), sums: ti.template()):
+        """Add a wall particle."""
+        rate = self.particles.rate[pair.jb, pair.lane]
+        sums[self.closed] += (pair.volume * rate) * self.constants.kernel.value(pair.t)

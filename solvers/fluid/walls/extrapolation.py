@@ -4,12 +4,15 @@ import taichi as ti
 
 from solvers.fluid.bodies.coupling import FreeBodyCoupling
 from solvers.fluid.lists.context import FluidContext
+from solvers.fluid.phases.air_at_walls import AirAtWalls
+from solvers.fluid.terms.term import Seen, Sums, Term, doing
+from solvers.fluid.walls.no_slip import MirroredVelocity
 from solvers.fluid.walls.slip_correction import SlipCorrection
-from solvers.fluid.walls.tangential_correction import TangentialCorrection
+from solvers.fluid.walls.tangential_correction import Leaning, TangentialCorrection
 from solvers.machine.phase import Phase
-from solvers.machine.state import Axis, State
+from solvers.machine.state import State
 from solvers.motion.poses import AT_START
-from solvers.space.axes import dot, named
+from solvers.space.axes import dot
 from solvers.tank.load import Load
 
 SEEN = 1e-6  # of full coverage: a wall particle that sees less water has no pressure
@@ -37,13 +40,28 @@ class Extrapolation:
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
         self.bodies = context.lists.bodies
         self.sticks = context.constants.viscous and not context.constants.slip
-        self.slip, self.tangential = SlipCorrection(arrays, context), tangential
-        self.coupling = FreeBodyCoupling(arrays, context, tangential, load, thickness, self.sticks)
-        if self.sticks:
-            own = arrays.under("water")
-            p = self.particles
-            each = Axis("block", p.worlds * p.stride), Axis("lane", p.lanes)
-            self.mirrored = own.wide(each, *named("mirrored", p.axes), kept=False)
+        self.sums = sums = Sums()
+        axes, two = context.particles.axes, context.constants.two
+        self.seen, self.pressed, self.lever = sums.room(), sums.room(), sums.room(axes)
+        self.tangential, self.air = tangential, AirAtWalls(sums, context) if two else None
+        self.leaning = Leaning(sums, context.particles)
+        self.coupling = FreeBodyCoupling(
+            arrays, sums, context, (tangential, self.leaning), (load, thickness), self.sticks
+        )
+        self.slip = SlipCorrection(arrays, sums, context)
+        self.velocity = MirroredVelocity(arrays, sums, context) if self.sticks else None
+        self.beginning, self.adding = (doing(self._terms(), part) for part in ("begin", "add"))
+
+    def _terms(self) -> list[Term | None]:
+        """The terms that the scene needs, in the order in which they add."""
+        leans = self.tangential.acts or self.coupling.acts
+        return [
+            self.leaning if leans else None,
+            self.coupling if self.coupling.acts else None,
+            self.velocity,
+            self.air,
+            self.slip if self.slip.acts else None,
+        ]
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -63,87 +81,67 @@ class Extrapolation:
     def extrapolate_block(self, u, b, begin, end):
         """The pressures of a block of wall particles from the entries `begin` to `end` of its list."""
         p, c = self.particles, self.constants
-        w = self.units.world(u)
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         shrink = c.get("shrink")
-        seen, pressed = p.zeros(), p.zeros()
-        lever = [p.zeros() for _ in ti.static(range(p.axes))]
-        airy, pressed_by_air = p.zeros(), p.zeros()  # of two phases, what of both is the air's
-        lever_of_air = [p.zeros() for _ in ti.static(range(p.axes))]
-        moved = [p.zeros() for _ in ti.static(range(p.axes))]
-        flow, inward = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
-        steep = [p.zeros() for _ in ti.static(range(p.axes))]
-        before, fixed = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
-        firm = p.zeros()
-        if ti.static(self.coupling.acts):
-            firm += p.load(p.firm, b)
+        sums = [p.zeros() for _ in ti.static(range(self.sums.count))]
+        for term in ti.static(self.beginning):
+            term.begin(b, sums)
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
             apart = self.lists.apart(own, origin, j)
-            t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
+            square = dot(apart, apart)
+            t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
             visible, volume = self.lists.visible(b, j, apart, AT_START), p.volume[jb, lane]
-            weight = visible * c.kernel.value(t)
-            if ti.static(self.tangential.acts or self.coupling.acts):
-                slope = c.kernel.slope(t)
-                for a in ti.static(range(p.axes)):
-                    steep[a] = steep[a] - (visible * (volume * slope)) * apart[a]
-                if ti.static(self.coupling.acts):
-                    always = self.coupling.fixed_push(dot(apart, apart), slope, p.pressure[jb, lane], firm)
-                    for a in ti.static(range(p.axes)):
-                        before[a] += (weight * volume) * apart[a]
-                        fixed[a] = fixed[a] - (visible * (volume * always)) * apart[a]
+            weight, slope = visible * c.kernel.value(t), c.kernel.slope(t)
             massive = weight * p.filling_mass(jb, lane)
-            if ti.static(self.sticks):
-                for a in ti.static(range(p.axes)):
-                    moved[a] += weight * (volume * p.velocity[a][jb, lane])
+            seen = ti.static(Seen(jb, lane, apart, square, t, visible, volume, weight, massive, slope))
+            for term in ti.static(self.adding):
+                term.add(b, seen, sums)
+            of_water, heavy = weight, massive
             if ti.static(p.two):
-                airy += weight * (volume * p.gas[jb, lane])
-                pressed_by_air += weight * (volume * p.gas[jb, lane] * p.pressure[jb, lane])
-                for a in ti.static(range(p.axes)):
-                    lever_of_air[a] += (massive * p.gas[jb, lane]) * apart[a]
-                    inward[a] = inward[a] - (weight * volume) * apart[a]
-                weight *= 1.0 - p.gas[jb, lane]
-                for a in ti.static(range(p.axes)):
-                    flow[a] += weight * (volume * p.velocity[a][jb, lane])
-                massive *= 1.0 - p.gas[jb, lane]
-            seen += weight * volume
-            pressed += weight * (volume * p.pressure[jb, lane])
+                of_water, heavy = weight * (1.0 - p.gas[jb, lane]), massive * (1.0 - p.gas[jb, lane])
+            sums[self.seen] += of_water * volume
+            sums[self.pressed] += of_water * (volume * p.pressure[jb, lane])
             for a in ti.static(range(p.axes)):
-                lever[a] += massive * apart[a]
-        pull = self.felt(w, b)
-        pull_of_air = self.of_air(w, pull)
-        wet = (seen + airy) * c.get("value")
-        if ti.static(c.modified):
-            for a in ti.static(range(p.axes)):
-                pull[a] = pull[a] + c.get("buoyed") * (pull_of_air[a] - pull[a])
+                sums[self.lever + a] += heavy * apart[a]
+        self.end(self.units.world(u), b, sums)
+
+    @ti.func
+    def end(self, w, b, sums: ti.template()):
+        """Store the pressures of a block of wall particles, and what its terms end in."""
+        p, c, pull = self.particles, self.constants, self.felt(w, b)
+        seen, pressed, whole = sums[self.seen], sums[self.pressed], sums[self.seen]
+        lever = [sums[self.lever + a] for a in ti.static(range(p.axes))]
         if ti.static(p.two):
-            pressure = ti.max((pressed + dot(pull, lever)) / ti.max(seen, 1e-30), 0.0)
-            p.store(p.pressure, b, pressure)
-            p.store(p.pressure_of_air, b, (pressed_by_air + dot(pull_of_air, lever_of_air)) / ti.max(airy, 1e-30))
-            p.store(p.share, b, seen / ti.max(seen + airy, 1e-30))
+            whole += sums[self.air.seen]
+            pull_of_air = self.of_air(w, pull)
+            if ti.static(c.modified):
+                for a in ti.static(range(p.axes)):
+                    pull[a] = pull[a] + c.get("buoyed") * (pull_of_air[a] - pull[a])
+            self.air.note(b, pull_of_air, seen, sums)
+        wet = whole * c.get("value")
+        pressure = (pressed + dot(pull, lever)) / ti.max(seen, 1e-30)
+        if ti.static(p.two):
+            p.store(p.pressure, b, ti.max(pressure, 0.0))
         else:
-            pressure = (pressed + dot(pull, lever)) / ti.max(seen, 1e-30)
             if ti.static(not c.full):
                 pressure = ti.max(pressure, 0.0)
             p.store(p.pressure, b, ti.select(wet > SEEN, pressure, p.zeros()))
         p.store(p.eigenvalue, b, wet)
         if ti.static(self.tangential.acts):
-            self.tangential.note(b, seen, steep)
+            self.tangential.note(b, seen, self.leaning.steep(sums))
         if ti.static(self.slip.acts):
-            self.slip.note(b, seen, flow, inward)
+            self.slip.note(b, seen, sums)
         if ti.static(self.coupling.acts):  # noqa: SIM102 (compiled only where bodies are free)
             if self.bodies.row(b) >= 0:
                 sees = ti.select(wet > SEEN, p.ones(), p.zeros()) / ti.max(seen, 1e-30)
                 for a in ti.static(range(p.axes)):
-                    lever[a], before[a] = sees * lever[a], before[a] / ti.max(seen, 1e-30)
-                still = sees * pressed + dot(pull, lever)
-                self.coupling.note(b, still, lever, steep, fixed, before, seen)
+                    lever[a] = sees * lever[a]
+                self.coupling.note(b, sees * pressed + dot(pull, lever), lever, seen, sums)
         if ti.static(self.sticks):
-            for a in ti.static(range(p.axes)):
-                mean = moved[a] / ti.max(seen + airy, 1e-30)
-                p.store(self.mirrored[a], b, 2.0 * p.load(p.velocity[a], b) - mean)
+            self.velocity.note(b, whole, sums)
 
     @ti.func
     def felt(self, w, b):

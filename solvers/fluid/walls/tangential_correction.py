@@ -7,6 +7,8 @@ import taichi as ti
 
 from solvers.fluid.bodies.solids import sides_of
 from solvers.fluid.lists.context import FluidContext
+from solvers.fluid.state import Particles
+from solvers.fluid.terms.term import Sums, Term
 from solvers.fluid.walls.layers import FAR, deep
 from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.state import Axis, State, padded
@@ -14,6 +16,26 @@ from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
 from solvers.tank.pieces import COSINE, SINE, Y, Z
 from solvers.tank.tank import Tank
+
+
+@ti.data_oriented
+class Leaning(Term):
+    """Σ V_f (−W'/r)(r_f − r_w) of wall particles: how far the water before them leans to one side."""
+
+    def __init__(self, sums: Sums, particles: Particles):
+        self.particles, self.first = particles, sums.room(particles.axes)
+
+    @ti.func
+    def add(self, b, seen: ti.template(), sums: ti.template()):
+        """Add a particle before a block of walls."""
+        for a in ti.static(range(self.particles.axes)):
+            weight = seen.visible * (seen.volume * seen.slope)
+            sums[self.first + a] = sums[self.first + a] - weight * seen.apart[a]
+
+    @ti.func
+    def steep(self, sums: ti.template()):
+        """The sum as a vector."""
+        return [sums[self.first + a] for a in ti.static(range(self.particles.axes))]
 
 
 @ti.data_oriented

@@ -1,10 +1,16 @@
 """What walls do to the water beside them: pressure, drag of water that sticks, and the load that they bear for it."""
 
+from collections.abc import Sequence
+
 import taichi as ti
 
 from solvers.fluid.lists.context import FluidContext
-from solvers.fluid.surface.void_indicator import VoidIndicator
+from solvers.fluid.phases.wall_push import WallPushOfTwo
+from solvers.fluid.terms.balance import Balance
+from solvers.fluid.terms.term import Pair, Sums, Term
 from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.fluid.walls.no_slip import WallDrag
+from solvers.fluid.walls.wall_push import WallPush
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
 from solvers.tank.pieces import RATE
@@ -14,105 +20,60 @@ from solvers.tank.pieces import RATE
 class WallForces:
     """Forces of walls on blocks of water, −Σ V_i V_w (p_i + p_w) ∇W and drag, whose reactions are the walls' load."""
 
-    def __init__(self, context: FluidContext, walls: Extrapolation, voids: VoidIndicator):
+    def __init__(
+        self, context: FluidContext, walls: Extrapolation, sums: Sums, balance: Balance, terms: Sequence[Term]
+    ):
+        """`terms` are those of the momentum pass that see walls."""
         self.particles, self.lists, self.constants = context.particles, context.lists, context.constants
-        self.poses, self.bodies, self.walls, self.voids = context.poses, context.lists.bodies, walls, voids
+        self.poses, self.bodies, self.walls, self.balance = context.poses, context.lists.bodies, walls, balance
+        self.push = WallPushOfTwo(sums, context, walls) if context.constants.two else WallPush(context)
+        self.drag = WallDrag(balance, context, walls.velocity) if walls.sticks else None
+        self.terms = list(terms)
 
     @ti.func
-    def add(
-        self,
-        u,
-        b,
-        piece,
-        ends: ti.template(),
-        own: ti.template(),
-        origin: ti.template(),
-        speed: ti.template(),
-        pressure: ti.template(),
-        wall: ti.template(),
-        own_push: ti.template(),
-        shift: ti.template(),
-        fill: ti.template(),
-        taken: ti.template(),
-    ):
+    def add(self, block: ti.template(), piece, ends: ti.template(), wall: ti.template(), sums: ti.template()):
         """Add what the wall particles of a piece, the entries between two `ends` of a list, do to a block.
 
-        `fill` are sums of `VoidIndicator`, `taken` the powers that viscosity and wall particles take. Piece 0 is the
-        tank, the others are parts in it."""
+        Piece 0 is the tank, the others are parts in it. `wall` is their force, over V_i and the kernel's factor."""
         p, c, lists = self.particles, self.constants, self.lists
-        shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), c.strength(), p.gases(b)
-        squeezed = 1.0 + gas * p.load(p.deviation, b)  # of air as heavy as before in less volume
-        weighs = [p.zeros() for _ in ti.static(range(p.axes))]
-        if ti.static(c.two):
-            w = self.lists.units.world(u)
-            felt = self.walls.of_air(w, self.walls.felt(w, b))
-            for a in ti.static(range(p.axes)):
-                weighs[a] += (gas * squeezed * c.get("air_density")) * felt[a]
-        turning = self.turning(u, piece)
+        shrink, turning = c.get("shrink"), self.turning(block.u, piece)
         for k in range(ends[0], ends[1]):
-            j = lists.beside.slots[u, k]
+            j = lists.beside.slots[block.u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(own, origin, j)
+            apart = lists.apart(block.own, block.origin, j)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            volume = p.volume[jb, lane] * lists.visible(b, j, apart, AT_START)
+            volume = p.volume[jb, lane] * lists.visible(block.b, j, apart, AT_START)
             weight = volume * c.kernel.slope(t)
-            if ti.static(c.shifting.acts):
-                crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
-                for a in ti.static(range(p.axes)):
-                    shift[a] += crowded * apart[a]
-            if ti.static(self.voids.acts):
-                fill[p.axes] += weight * square
-                for a in ti.static(range(p.axes)):
-                    off = weight * apart[a]
-                    fill[a] += (1.0 - gas) * off if ti.static(c.two) else off  # walls are no part of the air
-            along = self.wall_pressure(jb, lane, gas, pressure) + c.clipped(pressure, gas)
-            spring = volume * c.hardness(square, p.firm[jb, lane], gas)
-            if ti.static(c.two):
-                spring *= squeezed
-                along = along - dot(weighs, apart)
-                if ti.static(c.coheres):
-                    along += (gas * c.get("cohesion")) * c.cohesion.push(p.load(p.deviation, b))
-            along = along * weight + spring
-            more = along - pressure * weight
-            if ti.static(c.two):
-                more = along - (pressure * weight) * (1.0 + gas)
+            along = [p.zeros()]
+            pair = ti.static(Pair(jb, lane, apart, square, t, weight, volume, 0, weight, apart, along))
+            for term in ti.static(self.terms):
+                term.add_wall(block, pair, sums)
+            along[0] = self.push.along(block, pair, sums)
+            more = self.push.of_wall(block, pair, along[0])
             for a in ti.static(range(p.axes)):
-                own_push[a] += more * apart[a]
+                sums[self.balance.own_push + a] += more * apart[a]
             if ti.static(self.walls.tangential.acts):
-                by_wall = volume * p.pressure[jb, lane] * c.kernel.value(t)
-                for a in ti.static(range(p.axes)):
-                    off = self.walls.tangential.taken_off(jb, lane, by_wall, a)
-                    wall[a] = wall[a] - off
-                    own_push[a] = own_push[a] - off
-                    if ti.static(self.bodies.moving):
-                        taken[1] = taken[1] - p.velocity[a][jb, lane] * off
+                self.take_off(pair, wall, sums)
             if ti.static(self.bodies.moving):
-                taken[1] += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
+                moves = [p.velocity[a][jb, lane] for a in ti.static(range(p.axes))]
+                sums[self.balance.stored] += more * dot(moves, apart)
             if ti.static(self.walls.sticks):
-                slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                # What the drag takes is its power on the wall less that on the water.
-                lags = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                if ti.static(c.viscosity.central):
-                    closing = dot(slides, apart)
-                    drag = weight * c.viscosity.pull(closing, square + floor)
-                    if ti.static(c.two):
-                        drag *= c.of("strength", gas)
-                    along += strength * drag
-                    taken[0] += drag * dot(lags, apart)
-                else:
-                    heavy = weight
-                    if ti.static(c.two):
-                        heavy *= c.of("strength", gas)
-                    for a in ti.static(range(p.axes)):
-                        wall[a] += (strength * heavy) * slides[a]
-                    if ti.static(self.poses.rotating or self.bodies.moving):
-                        # The load is booked at the water's place, so that the wall moves as it would there.
-                        lags[0] = lags[0] - turning * apart[1]
-                        lags[1] += turning * apart[0]
-                    taken[0] += heavy * dot(slides, lags)
+                self.drag.add_wall(block, pair, turning, wall, sums)
             for a in ti.static(range(p.axes)):
-                wall[a] += along * apart[a]
+                wall[a] += along[0] * apart[a]
+
+    @ti.func
+    def take_off(self, pair: ti.template(), wall: ti.template(), sums: ti.template()):
+        """Take off what a wall particle pushes along its face; see `TangentialCorrection`."""
+        p, to = self.particles, self.balance
+        by_wall = pair.volume * p.pressure[pair.jb, pair.lane] * self.constants.kernel.value(pair.t)
+        for a in ti.static(range(p.axes)):
+            off = self.walls.tangential.taken_off(pair.jb, pair.lane, by_wall, a)
+            wall[a] = wall[a] - off
+            sums[to.own_push + a] = sums[to.own_push + a] - off
+            if ti.static(self.bodies.moving):
+                sums[to.stored] = sums[to.stored] - p.velocity[a][pair.jb, pair.lane] * off
 
     @ti.func
     def turning(self, u, piece):
@@ -124,15 +85,6 @@ class WallForces:
             if piece > 0:
                 rate += ti.cast(self.bodies.poses[w, piece - 1, RATE], self.particles.real)
         return rate
-
-    @ti.func
-    def wall_pressure(self, b, lane, gas: ti.template(), pressure: ti.template()):
-        """The pressure (Pa) of a wall particle, as particles of these phases and pressures see it: air its own."""
-        p = self.particles
-        if ti.static(p.two):
-            return (1.0 - gas) * p.pressure[b, lane] + gas * pressure
-        else:
-            return p.pressure[b, lane]
 
     @ti.func
     def weight(self, u, b, axis: ti.template()):
@@ -154,27 +106,27 @@ class WallForces:
         return found
 
     @ti.func
-    def on_walls(self, b, origin: ti.template(), own: ti.template(), wall: ti.template()):
+    def on_walls(self, block: ti.template(), wall: ti.template()):
         """Minus the walls' force on a block, and its moment about the tank's origin; the last two entries are zero."""
         p = self.particles
         total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(5))])
-        turning = own[0] * wall[1] - own[1] * wall[0]
+        turning = block.own[0] * wall[1] - block.own[1] * wall[0]
         force = [ti.cast(wall[a].sum(), p.exact) for a in ti.static(range(p.axes))]
-        y, z = ti.cast(origin[0], p.exact), ti.cast(origin[1], p.exact)
+        y, z = ti.cast(block.origin[0], p.exact), ti.cast(block.origin[1], p.exact)
         total[0], total[1] = 0.0 - force[0], 0.0 - force[1]
         total[2] = 0.0 - (ti.cast(turning.sum(), p.exact) + y * force[1] - z * force[0])
         return total
 
     @ti.func
-    def note_past(self, u, b, origin: ti.template(), own: ti.template(), speed: ti.template(), past: ti.template()):
+    def note_past(self, block: ti.template(), past: ti.template()):
         """The velocities (m/s) with which the particles of a block pass the end walls; see `EndWallFriction`."""
         p = self.particles
         for a in ti.static(range(p.axes)):
-            past[a] = p.filled(b) * speed[a]
+            past[a] = p.filled(block.b) * block.speed[a]
         if ti.static(self.poses.moving):
-            tank = self.walls_at(self.lists.units.world(u), origin, own)
+            tank = self.walls_at(self.lists.units.world(block.u), block.origin, block.own)
             for a in ti.static(range(p.axes)):
-                past[a] = past[a] - p.filled(b) * tank[a]
+                past[a] = past[a] - p.filled(block.b) * tank[a]
 
     @ti.func
     def walls_at(self, w, origin: ti.template(), own: ti.template()):
