@@ -15,6 +15,7 @@ from lab.preset.units import quoted
 FORMAT = 3
 SEA = "density", "depth"  # keys of the sea in format 2
 REWORDED = {"ship": {"coupling": {"as_K": "staggered"}}}  # values by section and key, and their present words
+GONE = {"air": ("vent_area",)}  # keys by section whose models were taken out; recordings may still hold them
 
 
 class OldFormat(UserWarning):
@@ -92,6 +93,9 @@ def recorded(table: Mapping) -> Mapping:
     """The table of a recorded preset in the keys and words of the present format."""
     kept = dict(table)
     _reword(kept)
+    for section, keys in GONE.items():
+        if isinstance(kept.get(section), Mapping):
+            kept[section] = {key: value for key, value in kept[section].items() if key not in keys}
     if "format" in table or not isinstance(table.get("tank"), Mapping):
         return _timed(kept)
     if "water" in kept:

@@ -12,6 +12,7 @@ from unicodedata import category
 
 from lab.base.errors import LabError
 from lab.base.toml import BARE_KEY
+from lab.preset import formats
 from lab.preset.fields import NAME, Table, Taken, defaults_of, join, taken_of, walk
 from lab.preset.units import needed, parse, quoted, show
 
@@ -68,6 +69,8 @@ def _refuse(key: object, wrong: str, known: list[str], everywhere: list[str]) ->
     """Raise LabError for a key that is unknown here; `wrong` is the whole of it."""
     if wrong in RENAMED:
         raise LabError(f"{wrong}: this key is {RENAMED[wrong]} now.")
+    if any(wrong == f"{section}.{gone}" for section, keys in formats.GONE.items() for gone in keys):
+        raise LabError(f"{wrong}: this version has no such model any more; leave the key out.")
     raise LabError(f"{wrong}: unknown key; {_hint(key, known, everywhere)}")
 
 

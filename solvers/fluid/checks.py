@@ -99,7 +99,6 @@ def refuse_reduced(scene) -> None:
     beside = {
         "parts": bool(scene.parts),
         "force gauges": bool(water.edges),
-        "air.vent_area": air.vent > 0.0,
         "air.stiff_from": air.stiff_from > 0.0,
         'air.interface = "cohesion"': air.cohesion > 0.0,
     }

@@ -63,10 +63,9 @@ class Air:
 
     `density` ρ_a (kg/m³) of air that is not compressed, `sound_speed` c_a (m/s), which until `stiff_from` (s) is
     `soft_speed`; `alpha` the strength of its artificial viscosity or `kinematic` ν (m²/s) that of laminar flow,
-    `tension` (N/m) of the surface between the phases;
-    `vent`: the area (m²) of openings to the outside, a metre of thickness; `interface`: the name of what acts between
-    the phases, and `cohesion` the pressure X (Pa) of that which has one; `reduced`: the height (m) of the surface at
-    rest, if pressures are over those of this fluid at rest (`solvers.fluid.phases.reduced_pressure`), else None.
+    `tension` (N/m) of the surface between the phases, `interface` the name of what acts between them, and `cohesion`
+    the pressure X (Pa) of that which has one; `reduced`: the height (m) of the surface at rest, if pressures are over
+    those of this fluid at rest (`solvers.fluid.phases.reduced_pressure`), else None.
     """
 
     density: float = 1.2
@@ -74,7 +73,6 @@ class Air:
     alpha: float = 0.01
     kinematic: float = 0.0
     tension: float = 0.0
-    vent: float = 0.0
     interface: str = "weighted"
     cohesion: float = 0.0
     soft_speed: float = 0.0

@@ -22,7 +22,6 @@ from solvers.fluid.lists.order import Order, Tanks
 from solvers.fluid.lists.work_ranges import WorkRanges
 from solvers.fluid.mover import Mover
 from solvers.fluid.phases.sound_switch import SoundSwitch
-from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, Particles
 from solvers.fluid.walls.added_mass import wall_added_mass
@@ -86,10 +85,10 @@ class WaterMatter(Matter):
         self.forces = Forces(arrays, shared, self.extrapolation, self.load, tank.thickness)
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
         self.has_multiples = self.sound_switch.has_multiples
-        self.continuity, self.vent = Continuity(arrays, shared, self.forces), OutflowVent(arrays, shared, water.air)
+        self.continuity = Continuity(arrays, shared, self.forces)
         self.inflow = Inflow(arrays, scene, shared, context.carrier) if fluid.inlets else None
         self.damping = DampingZones(arrays, water, p, units)
-        self.mover = Mover(arrays, shared, self.extrapolation, self.vent, self.forces.voids, substeps, self.damping)
+        self.mover = Mover(arrays, shared, self.extrapolation, self.forces.voids, substeps, self.damping)
         probes = [slots[slot] + p.fluid_blocks * lanes for slot in layers.probes]
         self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, layers.open)
         pool = Pool.of(scene, context.walls, self.order)
@@ -110,7 +109,6 @@ class WaterMatter(Matter):
         return (
             Phase(self.note_poses),
             Phase(self.forces.update_state, self.units),
-            *([Phase(self.vent.sum, self.units), Phase(self.vent.flow)] if self.vent.acts else ()),
             *self.extrapolation.phases,
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
@@ -250,9 +248,9 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        # A particle that goes round falls for ever; what tension and cohesion hold, and vents take, is not known.
+        # A particle that goes round falls for ever; what tension and cohesion hold is not known.
         # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 that nothing has given.
-        unknown = time == 0.0 or self.water.periodic or not self.constants.accounted or self.vent.acts or self.laying
+        unknown = time == 0.0 or self.water.periodic or not self.constants.accounted or self.laying
         lifts = self.water.shifting == "delta-plus" and not (self.water.full or self.water.air)
         check_water(rows, np.nan if unknown else self.start, time, self.least, lifts)
 

@@ -5,7 +5,6 @@ import taichi as ti
 
 from solvers.fluid.damping import DampingZones
 from solvers.fluid.lists.context import FluidContext
-from solvers.fluid.phases.vent import OutflowVent
 from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, THINNEST
 from solvers.fluid.surface.void_indicator import VoidIndicator
 from solvers.fluid.walls.extrapolation import Extrapolation
@@ -31,14 +30,13 @@ class Mover:
         arrays: State,
         context: FluidContext,
         walls: Extrapolation,
-        vent: OutflowVent,
         voids: VoidIndicator,
         substeps: Substeps,
         damping: DampingZones,
     ):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
-        self.walls, self.bodies, self.vent, self.voids = walls, context.lists.bodies, vent, voids
+        self.walls, self.bodies, self.voids = walls, context.lists.bodies, voids
         self.substeps, self.damping = substeps, damping
         own = arrays.under("water.mover")
         (self.fastest,) = own.reals((context.units.axis,), "fastest")
@@ -94,8 +92,6 @@ class Mover:
             gas = p.gases(b)
             step = dt * filled
             s = self.voids.stepped(b, p.load(p.deviation, b), p.load(p.rate, b), p.load(p.rate_of_walls, b), step)
-            if ti.static(self.vent.acts):
-                s = self.vent.pass_through(w, b, gas, s)
             if ti.static(c.two):
                 s = ti.max(s, (1.0 - gas) * (-1.0) + gas * THINNEST)
             p.store(p.deviation, b, s)

@@ -10,7 +10,6 @@ from solvers.fluid.phases.reduced_pressure import ReducedPressure
 
 UNBOUNDED = 1e20  # Pa
 TORN = 0.5  # of ρ_a c²: suction that air is said to bear at most; its vacuum is at 1/1.4
-CONTRACTED = 0.6  # discharge coefficient of a sharp-edged opening
 FASTEST = 0.5, 2.0  # Mach numbers of water and air at which a run is stopped: impacts squeeze air out
 
 # Times the spring behind a wall's face for its mass, beside water's: air may be as fast as its sound, and water presses
@@ -46,6 +45,5 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "lean_of_speed": lean_of_speed,
         "tension": air.tension,
         "cohesion": air.cohesion,
-        "vent": CONTRACTED * air.vent,
         "air_pace": FASTEST[0] * water.sound_speed / (FASTEST[1] * air.sound_speed),
     } | ReducedPressure.numbers(water)

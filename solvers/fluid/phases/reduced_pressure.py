@@ -15,7 +15,7 @@ class ReducedPressure:
     Potential energy is less by that of ρ_a g m_i/ρ_0i over the tank's own origin.
 
     Limits: ρ_a g is of the fluid at its density at rest; both are squeezed by p', not by p, a relative ρ_a g H/(ρ c²).
-    Not with parts, force gauges, vents, a cohesion, or air that becomes stiff.
+    Not with parts, force gauges, a cohesion, or air that becomes stiff.
 
     Units: p Pa, g m/s², ρ kg/m³, r and r_0 m; r_0 is at the surface at rest.
     """

@@ -8,6 +8,7 @@ import pytest
 
 from lab.assembly.scene import build
 from lab.assembly.water import air_volumes_of, drops_of, updates, volumes_of
+from lab.base.errors import LabError
 from lab.preset.merge import merged, nested
 from lab.preset.recorded import from_table, to_table
 from lab.preset.schema import Preset, resolve
@@ -91,6 +92,13 @@ def test_a_preset_with_air_comes_back_from_its_table():
     preset = airy(air__sound_speed="real", water__background_pressure="20 Pa", air__surface_tension="0.072 N/m")
     assert from_table(to_table(preset)) == preset
     assert preset.matters == ("water", "air")
+
+
+def test_a_key_whose_model_was_taken_out_is_refused_in_a_preset_and_read_in_a_recording():
+    with pytest.raises(LabError, match=r"^air\.vent_area: this version has no such model any more; leave the key out"):
+        airy(air__vent_area="1 cm^2")
+    table = to_table(airy())
+    assert from_table({**table, "air": {**table["air"], "vent_area": 0.0}}) == airy()
 
 
 def test_air_fills_what_the_water_leaves():

@@ -123,6 +123,6 @@ def test_starts_at_rest_without_weight_above():
 
 
 def test_what_does_not_go_with_it():
-    with pytest.raises(Unavailable, match=r"^air\.reduced: does not go with air\.vent_area; leave out"):
-        refuse_reduced(scene(vent=1e-4))
+    with pytest.raises(Unavailable, match=r"^air\.reduced: does not go with air\.stiff_from; leave out"):
+        refuse_reduced(scene(stiff_from=1.0))
     refuse_reduced(scene())

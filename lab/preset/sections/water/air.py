@@ -44,10 +44,6 @@ class Air:
         Usual(0.0, 0.1, "N/m"),
         Doc("Tension of the surface between water and air; 0.072 N/m of clean water."),
     ] = 0.0
-    vent_area: Annotated[
-        Annotated[float, Unit("m^2"), Interval(ge=0)],
-        Doc("Area of openings through which air comes and goes; the tank is closed without it."),
-    ] = 0.0
     reduced: Annotated[
         bool,
         Doc(

@@ -118,7 +118,6 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         alpha=alpha if air.alpha is None else air.alpha,
         kinematic=air.kinematic_viscosity or 0.0,
         tension=air.surface_tension,
-        vent=air.vent_area / preset.thickness,
         interface=acts,
         cohesion=Cohesion.pull(heavy, air.density, preset.run.gravity, depth(preset)) if acts == "cohesion" else 0.0,
         soft_speed=0.0 if air.stiff_from is None else sound,
