@@ -17,6 +17,7 @@ from solvers.fluid.surface.void_indicator import VoidIndicator
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.fluid.walls.layers import FIRM
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
 
 FLOOR = 1e-6  # of h², added to squared distances that are divided by
@@ -32,8 +33,8 @@ HARD = 0.2
 class Constants:
     """The models of a scene's water, and their numbers (SI) by name, read by `get` from one small array."""
 
-    def __init__(self, arrays: State, water: Water, gravity: float):
-        self.kernel, self.state = KERNELS[water.kernel](), STATES[water.state]()
+    def __init__(self, arrays: State, water: Water, gravity: float, axes: int = PLANE):
+        self.axes, self.kernel, self.state = axes, KERNELS[water.kernel](), STATES[water.state]()
         self.diffusion, self.viscosity = DIFFUSION[water.diffusion](), VISCOSITY[water.viscosity]()
         self.shifting = SHIFTING[water.shifting]()
         self.slip, self.full, self.pressed = water.slip, water.full, water.background > 0.0
@@ -53,7 +54,7 @@ class Constants:
     def numbers_of(self, water: Water, gravity: float) -> dict[str, float]:
         """The numbers (SI) of a scene's water by name, those of its air after its own."""
         length, sound, pull = water.length, water.sound_speed, water.pull
-        value, slope = self.kernel.factors(length)
+        value, slope = self.kernel.factors(length, self.axes)
         numbers = {
             "shrink": 0.5 / length,  # 1/(2h): t = 1 − r/(2h)
             "value": value,
@@ -68,17 +69,18 @@ class Constants:
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
             "spacing": water.spacing,
             "reach": water.reach,
-            "hard": water.density * (HARD * sound / water.spacing) ** 2 / (slope * water.spacing**2),
+            "hard": water.density * (HARD * sound / water.spacing) ** 2 / (slope * water.spacing**self.axes),
             "fastest": FASTEST * sound,
             "shift": self.shifting.strength(water) * slope if self.shifting.acts else 0.0,
             "shift_most": 0.5 * water.speed,
-            "shift_scale": value / self.kernel.printed(water.spacing, length),
+            "shift_scale": value / self.kernel.printed(water.spacing, length, self.axes),
             "end_walls": EndWallFriction.rate(water),  # 1/s
             "pull": pull.rate**2 if pull else 0.0,
             "pull_y": pull.centre[0] if pull else 0.0,
             "pull_z": pull.centre[1] if pull else 0.0,
         }
-        numbers |= VoidIndicator.numbers(self.kernel, length, sound) | Reinitialisation.numbers(self.kernel, water)
+        numbers |= VoidIndicator.numbers(self.kernel, length, sound, self.axes)
+        numbers |= Reinitialisation.numbers(self.kernel, water, self.axes)
         return numbers | (of_air(water, gravity, numbers, self.viscosity) if self.two else {})
 
     def become(self, water: Water, gravity: float) -> None:

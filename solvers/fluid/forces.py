@@ -18,6 +18,7 @@ from solvers.fluid.terms.viscous_force import ViscousForce
 from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.wall_forces import WallForces
+from solvers.machine.quantity import freedoms
 from solvers.machine.state import State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
@@ -39,7 +40,7 @@ class Forces:
     def __init__(self, arrays: State, context: FluidContext, walls: Extrapolation, load: Load, thickness: float):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
-        self.sums = Sums()
+        self.sums, self.freedoms = Sums(), len(freedoms(context.particles.axes))
         self.balance, self.load = Balance(self.sums, context.particles.axes), load
         terms = self._terms(arrays)
         self.walls = WallForces(context, walls, self.sums, self.balance, doing(terms, "add_wall"))
@@ -119,7 +120,7 @@ class Forces:
         """Accelerations of a unit's particles, their gradients of density, and the load on the walls."""
         self.load.begin(u)
         first, end = self.ranges.fluid(u)
-        total = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(5))])
+        total = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(self.freedoms + 2))])
         tank, before, shown = 0, total, total  # `shown`: each tank as long as it is
         if first < end:
             tank = self.order.layer(first)
@@ -132,12 +133,13 @@ class Forces:
             total += found
             shown += self.order.weight(b) * found
         thick, during = self.thick[0], ti.cast(kick, self.particles.exact)
-        self.dissipated[u] = self.dissipated[u] + shown[3] * during
-        self.stored[u] = self.stored[u] + shown[4] * during
-        self.powers[0][u], self.powers[1][u] = shown[3], shown[4]
+        taken, stored = shown[self.freedoms], shown[self.freedoms + 1]
+        self.dissipated[u] = self.dissipated[u] + taken * during
+        self.stored[u] = self.stored[u] + stored * during
+        self.powers[0][u], self.powers[1][u] = taken, stored
         if ti.static(self.poses.moving):
-            w = self.units.world(u)
-            power = dot([shown[0], shown[1], shown[2]], [self.poses.walls[3 + k][w] for k in ti.static(range(3))])
+            load = [shown[k] for k in ti.static(range(self.freedoms))]
+            power = dot(load, self.poses.of_walls(self.units.world(u), AT_START))
             self.wall_work[u] = self.wall_work[u] - power * during
             self.powers[2][u] = 0.0 - power
         if ti.static(self.bodies.count > 0):
@@ -150,8 +152,9 @@ class Forces:
 
     @ti.func
     def book(self, u, tank, total, dt):
-        """Book the load on a tank: force (y, z; N/m) and moment (N)."""
-        self.load.book(u, tank, ti.Vector([total[k] * self.thick[0] for k in ti.static(range(3))]), dt)
+        """Book the load on a tank: force (N/m) and moment (N), in space N and N m."""
+        load = [total[k] * self.thick[0] for k in ti.static(range(self.freedoms))]
+        self.load.book(u, tank, ti.Vector(load), dt)
 
     @ti.func
     def pass_block(self, u, b, listed, kick):
@@ -243,6 +246,6 @@ class Forces:
             for a in ti.static(range(p.axes)):
                 force[a] = force[a] - p.load(p.mass, b) * hold[a]
         total = self.walls.on_walls(block, force)
-        total[3] = ti.cast(power.sum(), p.exact)
-        total[4] = ti.cast((volume * stored).sum(), p.exact)
+        total[self.freedoms] = ti.cast(power.sum(), p.exact)
+        total[self.freedoms + 1] = ti.cast((volume * stored).sum(), p.exact)
         return total

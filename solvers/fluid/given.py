@@ -7,18 +7,16 @@ import numpy as np
 
 from solvers.fluid.inflow.inlet import Inlet
 from solvers.machine.marks import Doc, EachWorld, Interval, NotOfBed, Unit
+from solvers.machine.quantity import PLANE
 from solvers.tank.given import Given
 
+
 # A particle as it starts: position (m) and velocity over the earth (m/s) in the tank's axes, density deviation s = ρ/ρ0
-# − 1, volume (m²) in the plane, and whether it is air. A motion that starts abruptly finds the water at rest.
-PARTICLE = np.dtype(
-    [("position", float, 2), ("velocity", float, 2), ("deviation", float), ("volume", float), ("gas", bool)]
-)
-
-
-def particles(*shape: int) -> np.ndarray:
+# − 1, volume (m³, in the plane m²), and whether it is air. A motion that starts abruptly finds the water at rest.
+def particles(*shape: int, axes: int = PLANE) -> np.ndarray:
     """An array of particles of water at the origin, at rest, without pressure or volume."""
-    return np.zeros(shape, PARTICLE)
+    vectors = [("position", float, axes), ("velocity", float, axes)]
+    return np.zeros(shape, np.dtype([*vectors, ("deviation", float), ("volume", float), ("gas", bool)]))
 
 
 @dataclass(frozen=True)
@@ -151,7 +149,7 @@ class Water:
 
 @dataclass(frozen=True, eq=False)
 class Fluid(Given):
-    """The fluid of a scene: its `water`, the `particles` (W, n) of `PARTICLE` as they start, and its steps.
+    """The fluid of a scene: its `water`, the `particles` (W, n) as they start, and its steps.
 
     Those of air come last. `in_tanks`: how many particles are in each tank of a world, by their numbers one after the
     other; (): all are in the first. Fluid of different tanks never meets, though they may overlap in the plane. A step

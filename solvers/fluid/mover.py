@@ -159,17 +159,11 @@ class Mover:
             for a in ti.static(range(p.axes)):
                 after[a] += p.long((2.0 * half) * p.load(p.shift[a], b))
         if ti.static(poses.moving):
-            cos, sin = ti.cast(poses.drift[w, part, 0], p.where), ti.cast(poses.drift[w, part, 1], p.where)
-            e_y, e_z = ti.cast(poses.drift[w, part, 2], p.where), ti.cast(poses.drift[w, part, 3], p.where)
-            keep = p.long(filled)
+            keep, seen = p.long(filled), poses.drifted(w, part, after, p.where)
             if ti.static(poses.rotating):
                 self.turn(w, b, u, p.velocity, part)
-                y, z = cos * after[0] - sin * after[1] + e_y, sin * after[0] + cos * after[1] + e_z
-                p.store(p.place[0], b, before[0] + keep * (y - before[0]))
-                p.store(p.place[1], b, before[1] + keep * (z - before[1]))
-            else:
-                p.store(p.place[0], b, before[0] + keep * (after[0] + e_y - before[0]))
-                p.store(p.place[1], b, before[1] + keep * (after[1] + e_z - before[1]))
+            for a in ti.static(range(p.axes)):
+                p.store(p.place[a], b, before[a] + keep * (seen[a] - before[a]))
         else:
             for a in ti.static(range(p.axes)):
                 p.store(p.place[a], b, after[a])
@@ -180,10 +174,9 @@ class Mover:
     def turn(self, w, b, vector: ti.template(), fields: ti.template(), part: ti.template()):
         """Turn the vectors of a block into the axes at the end of a half step."""
         p = self.particles
-        cos = ti.cast(self.poses.drift[w, part, 0], p.real)
-        sin = ti.cast(self.poses.drift[w, part, 1], p.real)
-        p.store(fields[0], b, cos * vector[0] - sin * vector[1])
-        p.store(fields[1], b, sin * vector[0] + cos * vector[1])
+        found = self.poses.turned(w, part, vector, p.real)
+        for a in ti.static(range(p.axes)):
+            p.store(fields[a], b, found[a])
 
     @ti.func
     def largest(self, values):

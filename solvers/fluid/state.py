@@ -132,7 +132,7 @@ class Particles:
     def put(self, start: np.ndarray, water: Water, present: np.ndarray) -> None:
         """Fill the blocks in the order of the numbers with those particles (W, n) that are `present` (n,) at the start.
 
-        Each is as it starts (`given.PARTICLE`).
+        Each is as it starts (`given.particles`).
         """
         number, start = np.flatnonzero(present), start[:, present]
         density = water.density
@@ -142,7 +142,7 @@ class Particles:
         along = [start[name][..., axis] for name in ("position", "velocity") for axis in range(start[name].shape[-1])]
         columns = [*along, start["deviation"], mass, np.broadcast_to(number, mass.shape)]
         columns += [*([start["gas"]] if self.two else []), start["volume"]]
-        fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, *([0.0] if self.two else []), 0.0]
+        fills = [*[FAR] * self.axes, *[0.0] * self.axes, 0.0, 0.0, UNUSED, *([0.0] if self.two else []), 0.0]
         for field, values, fill in zip([*self.given, self.volume], columns, fills, strict=True):
             whole = self.by_world(field.to_numpy())
             whole[:, : self.fluid_blocks * self.lanes] = fill

@@ -79,7 +79,7 @@ def _smear(shape: tuple[int, ...], size: tuple[float, float], water: Water):
 
 
 def laid(bed: PorosityMap, count: int, amount: float, water: Water, gravity: float) -> np.ndarray:
-    """So many particles (count,) of `solvers.fluid.given.PARTICLE` at rest in a bed, water of the area `amount` (m²).
+    """So many particles (count,) of `solvers.fluid.given.particles` at rest in a bed, water of the area `amount` (m²).
 
     Each has as much water. They lie in rows from the floor on, as high and as far apart as the pores there are narrow:
     where grains leave the share ε, the spacing is Δx/√ε. Raises ValueError if the tank is too small.

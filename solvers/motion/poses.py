@@ -23,7 +23,7 @@ class Poses:
     """
 
     def __init__(self, arrays: State, carrier, worlds: int, long: bool = False):
-        self.carrier, self.exact, self.long = carrier, arrays.exact, long
+        self.carrier, self.exact, self.real, self.long = carrier, arrays.exact, arrays.real, long
         self.moving, self.rotating = carrier.moving, carrier.moving and carrier.rotating
         own, world = arrays.under("poses"), (Axis("world", worlds),)
         names = "pull_y", "pull_z", "felt_y", "felt_z", "rate", "rate_up"
@@ -102,6 +102,35 @@ class Poses:
         """Note the velocity and rate of roll of a pose, in the tank's axes."""
         velocity = turned(pose[3], pose[4], -pose[2])
         self.walls[first][w], self.walls[first + 1][w], self.walls[first + 2][w] = velocity[0], velocity[1], pose[5]
+
+    @ti.func
+    def of_walls(self, w, when: ti.template()):
+        """The walls' velocity and rate of roll at the start of the step, or in its middle, as a list."""
+        return [self.walls[3 * (1 - when) + k][w] for k in ti.static(range(3))]
+
+    @ti.func
+    def press(self, w, place: ti.template(), felt: ti.template()):
+        """Add what the turning of the tank makes walls at a place (lanes of m, a list) feel, m/s²."""
+        real = ti.static(self.real)
+        rate, up = ti.cast(self.felt[4][w], real), ti.cast(self.felt[5][w], real)
+        felt[0] += up * place[1] + (rate * rate) * place[0]
+        felt[1] += (rate * rate) * place[1] - up * place[0]
+
+    @ti.func
+    def drifted(self, w, part: ti.template(), place: ti.template(), where: ti.template()):
+        """Places (lanes of m, a list) as the tank's axes at the end of a half step see them."""
+        shift = [ti.cast(self.drift[w, part, 2 + a], where) for a in ti.static(range(2))]
+        if ti.static(self.rotating):
+            found = self.turned(w, part, place, where)
+            return [found[a] + shift[a] for a in ti.static(range(2))]
+        else:
+            return [place[a] + shift[a] for a in ti.static(range(2))]
+
+    @ti.func
+    def turned(self, w, part: ti.template(), vector: ti.template(), kind: ti.template()):
+        """A vector (lanes, a list) in the axes at the end of a half step."""
+        cos, sin = ti.cast(self.drift[w, part, 0], kind), ti.cast(self.drift[w, part, 1], kind)
+        return [cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]]
 
     @ti.func
     def note_half(self, w, half, a: ti.template(), b: ti.template()):

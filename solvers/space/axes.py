@@ -37,6 +37,18 @@ def cross(a: ti.template(), b: ti.template()):
 
 
 @ti.func
+def swing(rate: ti.template(), arm: ti.template(), velocity: ti.template()):
+    """Add the velocity ω × r of a rate of turning (rad/s) and an arm (m), lists, to a `velocity`."""
+    if ti.static(len(rate) == 1):
+        velocity[0] = velocity[0] - rate[0] * arm[1]
+        velocity[1] += rate[0] * arm[0]
+    else:
+        swung = cross(rate, arm)
+        for a in ti.static(range(3)):
+            velocity[a] += swung[a]
+
+
+@ti.func
 def dot(a: ti.template(), b: ti.template()):
     """Scalar product of two vectors, lists of components, summed in the order of the axes."""
     total = a[0] * b[0]

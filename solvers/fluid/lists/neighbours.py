@@ -8,18 +8,19 @@ import taichi as ti
 from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.constants import Constants
 from solvers.fluid.lists.listing import Listing
-from solvers.fluid.lists.order import BINS, ROWS, Order
+from solvers.fluid.lists.order import ABREAST, BINS, ROWS, Order
 from solvers.fluid.lists.work_ranges import WorkRanges
 from solvers.fluid.state import UNUSED
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import State, padded
 from solvers.machine.units import Units
-from solvers.space.axes import dot
+from solvers.space.axes import UP, dot
 
 NEVER = 1e30  # m, a displacement that makes the lists invalid
 SKIN = (0.3, 1.2)  # spacings: the skin in a still tank, and in a violent one
 LASTING = 6  # steps for which a list should last: the skin follows from the speed at the last rebuild
 FASTER = 1.25  # what particles may gain in speed until the next step
-PLACES = 27  # bits of an entry that number a slot; the others number the periodic image in which it is seen
+PLACES = {PLANE: 27, SPACE: 26}  # bits of an entry that number a slot; the others: the periodic image it is seen in
 CROWDED = 1.6  # times the neighbours of a square block at rest: room for those of long blocks and of dense impacts
 
 
@@ -49,14 +50,18 @@ class Lists:
         own = arrays.under("water.lists")
         self.periods = own.holding("periods", np.array(order.grid.periods), "axis", own.place)
         wraps = [(-1, 0, 1) if period else (0,) for period in order.grid.periods]
-        self.images = tuple(3 * (up + 1) + along + 1 for along, up in product(*wraps))
+        self.axes, self.bits = order.particles.axes, PLACES[order.particles.axes]
+        self.images = tuple(sum(3**a * (step + 1) for a, step in enumerate(steps)) for steps in product(*wraps))
         self.wall_first = own.holding("wall_first", padded(walls, order.keys), "key", ti.i32)
         particles = order.particles
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.fluid_blocks, max(particles.wall_blocks, 1)))
-        crowd = room * self._crowd(order.grid.lanes, constants.smoothing)
+        crowd = room * self._crowd(order.grid.lanes, constants.smoothing, self.axes)
         few = 4 * particles.wall_blocks * particles.lanes // units.a_world + wet  # blocks beside walls
         slots = particles.stride * particles.lanes  # of a world
-        ends = particles.worlds * slots if len(self.images) == 1 else 9 << PLACES, slots  # an image stands in front
+        ends = (
+            particles.worlds * slots if len(self.images) == 1 else 3**self.axes << self.bits,
+            slots,
+        )  # an image stands in front
         self.near = Listing(arrays, units, "near", wet, crowd * wet, *ends)
         self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), *ends)
         self.facing = Listing(arrays, units, "facing", dry, crowd * dry, *ends)
@@ -65,10 +70,16 @@ class Lists:
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
 
     @staticmethod
-    def _crowd(lanes: int, smoothing: float) -> int:
-        """Usual number of neighbours of a full block: the area within reach of its square, with the widest skin."""
-        side, far = lanes**0.5 if lanes > 1 else 0.0, 2.0 * smoothing + SKIN[1]
-        return int(CROWDED * (side**2 + 4.0 * side * far + np.pi * far**2))
+    def _crowd(lanes: int, smoothing: float, axes: int) -> int:
+        """Usual number of neighbours of a full block: what is within reach of its square or cube, with the widest skin.
+
+        By Steiner's formula for what is within a distance of a convex body.
+        """
+        side, far = lanes ** (1.0 / axes) if lanes > 1 else 0.0, 2.0 * smoothing + SKIN[1]
+        if axes == PLANE:
+            return int(CROWDED * (side**2 + 4.0 * side * far + np.pi * far**2))
+        round_edges = 6.0 * side**2 * far + 3.0 * np.pi * side * far**2
+        return int(CROWDED * (side**3 + round_edges + 4.0 / 3.0 * np.pi * far**3))
 
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
@@ -166,13 +177,18 @@ class Lists:
         start = w * p.stride * p.lanes
         if ti.static(walls):
             start += p.fluid_blocks * p.lanes
-        base = order.layer(b) * order.sizes[ROWS]
-        for strip in range(base + order.strip_of(lower[1] - far), base + order.strip_of(upper[1] + far) + 1):
-            begin = self.at(w, strip * order.sizes[BINS] + left, walls)
-            end = self.at(w, strip * order.sizes[BINS] + right + 1, walls)
-            for k in range(start + begin, start + end):
-                listing.slots[u, ti.min(found, listing.capacity - 1)] = k + code  # without a branch
-                found += ti.select(self.outside(k, lower, upper) < reach * reach, 1, 0)
+        base, under, over = order.layer(b) * order.sizes[ROWS], lower[1] - far, upper[1] + far
+        for rank in range(order.rank_of(under, UP), order.rank_of(over, UP) + 1):
+            first, last = rank, rank
+            if ti.static(self.axes > PLANE):
+                first = rank * order.sizes[ABREAST] + order.rank_of(lower[2] - far, 2)
+                last = rank * order.sizes[ABREAST] + order.rank_of(upper[2] + far, 2)
+            for strip in range(base + first, base + last + 1):
+                begin = self.at(w, strip * order.sizes[BINS] + left, walls)
+                end = self.at(w, strip * order.sizes[BINS] + right + 1, walls)
+                for k in range(start + begin, start + end):
+                    listing.slots[u, ti.min(found, listing.capacity - 1)] = k + code  # without a branch
+                    found += ti.select(self.outside(k, lower, upper) < reach * reach, 1, 0)
         return found
 
     @ti.func
@@ -195,7 +211,7 @@ class Lists:
         """Shift a box to where an image of periodic space sees it; returns what entries of that image have in front."""
         code = 0
         if ti.static(len(self.images) > 1):
-            code = image * (1 << PLACES)
+            code = image * ti.static(1 << self.bits)
             for a in ti.static(range(self.particles.axes)):
                 lower[a] -= self.shift(image, a)
                 upper[a] -= self.shift(image, a)
@@ -224,9 +240,7 @@ class Lists:
     @ti.func
     def shift(self, image, axis: ti.template()):
         """By how much (m) an image of periodic space is displaced along an axis."""
-        step = image // 3 - 1
-        if ti.static(axis == 0):
-            step = image % 3 - 1
+        step = image // ti.static(3**axis) % 3 - 1
         return ti.cast(step, self.particles.where) * self.periods[axis]
 
     @ti.func
@@ -243,7 +257,7 @@ class Lists:
     def slot_of(self, entry):
         """The slot of an entry."""
         if ti.static(len(self.images) > 1):
-            return entry & ti.static((1 << PLACES) - 1)
+            return entry & ti.static((1 << self.bits) - 1)
         else:
             return entry
 
@@ -270,7 +284,7 @@ class Lists:
     def seen(self, entry, axis: ti.template()):
         """By how much (m) the image of an entry is displaced along an axis."""
         if ti.static(len(self.images) > 1):
-            return self.shift(entry >> PLACES, axis)
+            return self.shift(entry >> ti.static(self.bits), axis)
         else:
             return ti.cast(0.0, self.particles.where)
 

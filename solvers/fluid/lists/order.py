@@ -11,10 +11,12 @@ import taichi as ti
 
 from solvers.fluid.lists.grid import Grid
 from solvers.fluid.state import COUNT, FAR, FLUID, UNUSED, Particles
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State, roomy
+from solvers.space.axes import UP
 
 CHUNK = 256  # keys that one thread sums up
-STRIPS, BINS, LONGEST, KEYS, ROWS = range(5)  # what of the grid is kept in `sizes`
+STRIPS, BINS, LONGEST, KEYS, ROWS, ABREAST = range(6)  # what of the grid is kept in `sizes`
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,8 @@ class Order:
         self.particles, self.grid = particles, grid
         self.inflow, self.leaks = None, False  # what lets particles enter before they are sorted
         self.layers = grid.layers
-        sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins, grid.rows
+        sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins, grid.rows, grid.rows // grid.ranks[0]
+        self.axes, self.per_metre, self.period, self.origin = grid.axes, *grid.places
         # A particle of a full tank takes two keys, and there is room for twice as many.
         self.keys = roomy(sizes[KEYS] + 1, 2 * particles.fluid_blocks * particles.lanes)
         self.chunks = -(-self.keys // CHUNK)
@@ -78,18 +81,30 @@ class Order:
     @ti.func
     def bin_of(self, y):
         """The bin of a place along y (m)."""
-        return ti.max(0, ti.min(self.sizes[BINS] - 1, ti.cast((y - self.numbers[0]) * self.numbers[2], ti.i32)))
+        along = (y - self.numbers[0]) * self.numbers[self.per_metre]
+        return ti.max(0, ti.min(self.sizes[BINS] - 1, ti.cast(along, ti.i32)))
+
+    @ti.func
+    def rank_of(self, place, axis: ti.template()):
+        """Which of the strips along an axis, not the first, a place (m) on it is in."""
+        most = self.sizes[ABREAST]
+        if ti.static(axis == UP):
+            most = self.sizes[ROWS] // self.sizes[ABREAST]
+        rank = ti.cast((place - self.numbers[axis]) * self.numbers[self.per_metre + 1], ti.i32)
+        return ti.max(0, ti.min(most - 1, rank))
 
     @ti.func
     def strip_of(self, z):
-        """The strip of a height z (m)."""
-        return ti.max(0, ti.min(self.sizes[ROWS] - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
+        """The strip of a height z (m) in the plane."""
+        return self.rank_of(z, UP)
 
     @ti.func
     def find(self, b, lane):
         """The key of a particle."""
         p = self.particles
-        strip = self.strip_of(p.place[1][b, lane])
+        strip = self.rank_of(p.place[1][b, lane], UP)
+        if ti.static(self.axes > PLANE):
+            strip = strip * self.sizes[ABREAST] + self.rank_of(p.place[2][b, lane], 2)
         if ti.static(self.layers > 1):
             strip += self.layer_of(p.number[b, lane]) * self.sizes[ROWS]
         return strip * self.sizes[BINS] + self.bin_of(p.place[0][b, lane])
@@ -128,8 +143,8 @@ class Order:
         p = self.particles
         for a in ti.static(range(p.axes)):
             if ti.static(self.grid.periods[a] > 0.0):
-                period = self.numbers[4 + a]
-                beyond = ti.floor((p.place[a][b, lane] - self.numbers[6 + a]) / period)
+                period = self.numbers[self.period + a]
+                beyond = ti.floor((p.place[a][b, lane] - self.numbers[self.origin + a]) / period)
                 p.place[a][b, lane] = p.place[a][b, lane] - beyond * period
 
     def let_in(self, inflow) -> None:

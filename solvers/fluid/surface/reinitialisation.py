@@ -4,11 +4,12 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.state import Particles
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State
 
 SLOW = 0.01  # of δ c0/h, the rate at which diffusion evens the densities of neighbours
 FELT = 10.0  # of |ρ/ρ0 − 1|, the most that counts of F/F_0 − 1
-SEEN = 0.1  # of F that a surface takes off half the trace: from there on it is too near
+SEEN = 0.1  # of F that a surface takes off the trace: from there on it is too near
 
 VOID = -0.1  # what F of air may lack: to fill a void is left to the flow
 
@@ -21,7 +22,7 @@ class Reinitialisation:
     water ends packed too close at the density of rest, and its level sinks. Colagrossi & Landrini (2003) set the
     density anew every 20 steps, from a sum of masses over neighbours, so that mass, density and the room that is taken
     agree again. Here that is slow and steady (own derivation): F is the density by the places of neighbours over the
-    density that they carry, with their volumes m/ρ. F_0 is that of a square lattice of the run's h/Δx.
+    density that they carry, with their volumes m/ρ. F_0 is that of a square, or cubic, lattice of the run's h/Δx.
 
     Sound and waves change both densities alike, so that the term does not feel them. τ is a hundred times that in
     which diffusion evens neighbours (h/(δ c0)): what F is off in single particles comes to the pressure by a hundredth.
@@ -51,11 +52,11 @@ class Reinitialisation:
             (self.drift,) = arrays.under("water").wide(each, "drift", kept=False)
 
     @staticmethod
-    def numbers(kernel, water) -> dict[str, float]:
+    def numbers(kernel, water, axes: int = PLANE) -> dict[str, float]:
         """The constants of the term, for a scene's water."""
         return {
             "keeping": SLOW * water.delta * water.sound_speed / water.length,
-            "lattice": 1.0 / lattice(kernel, water.smoothing),
+            "lattice": 1.0 / lattice(kernel, water.smoothing, axes),
             "seen": 1.0 / SEEN,
         }
 
@@ -80,11 +81,13 @@ class Reinitialisation:
         return (1.0 + s) * self.particles.load(self.drift, b)
 
 
-def lattice(kernel, smoothing: float) -> float:
-    """F of a square lattice with h/Δx `smoothing`: ½ Σ V (−W'/r) r²."""
+def lattice(kernel, smoothing: float, axes: int = PLANE) -> float:
+    """F of a square or cubic lattice with h/Δx `smoothing`: Σ V (−W'/r) r²/D."""
     n = np.arange(-np.ceil(2.0 * smoothing), np.ceil(2.0 * smoothing) + 1.0)
-    r = np.hypot(n[:, None], n[None])
+    r = np.hypot(n[:, None], n)
+    if axes > PLANE:
+        r = np.hypot(r[..., None], n)
     r = r[(r > 0.0) & (r < 2.0 * smoothing)]
     step = 1e-6 * smoothing
-    drop = kernel.printed(r - step, smoothing) - kernel.printed(r + step, smoothing)
-    return float(0.5 * (r * drop).sum() / (2.0 * step))
+    drop = kernel.printed(r - step, smoothing, axes) - kernel.printed(r + step, smoothing, axes)
+    return float((r * drop).sum() / axes / (2.0 * step))

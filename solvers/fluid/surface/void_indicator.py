@@ -8,21 +8,23 @@ from solvers.fluid.state import SPRAY, Particles
 from solvers.fluid.surface.reinitialisation import Reinitialisation
 from solvers.fluid.terms.renormalisation import Renormalisation
 from solvers.fluid.terms.term import Sums, Term
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State
 from solvers.space.axes import dot
 
-PACKING = 0.93  # packing threshold: F from which on water bears pressure
-RAMP = 0.05  # of F, over which the relief grows to all of c0/h
+PACKING = 0.93  # packing threshold: F from which on water bears pressure, in the plane
+RAMP = 0.05  # of F, over which the relief grows to all of c0/h, in the plane
 
 
 @ti.data_oriented
 class VoidIndicator(Term):
-    """F = ½ Σ V (−W'/r) r² + b |Σ V ∇W|, over water and wall particles: 1 where water is packed, at its surface too.
+    """F = Σ V (−W'/r) r²/D + b |Σ V ∇W|, over water and wall particles: 1 where water is packed, at its surface too.
 
-    The first sum is half the trace of the matrix of Randles & Libersky (1996); it is 1 within packed water and ½ at a
-    plane surface. What a plane cuts off is told by the second sum, and b, a length, is such that both are 1
-    together (own derivation). A drop alone has F = 0, a lattice that is stretched by 5 % in all directions 0.90. Beside
-    air both sums are over the own phase.
+    The first sum is the trace of the matrix of Randles & Libersky (1996) over the number of axes D; it is 1 within
+    packed water and ½ at a plane surface. What a plane cuts off is told by the second sum, and b, a length, is such
+    that both are 1 together (own derivation). A drop alone has F = 0, a lattice that is stretched by 5 % in all
+    directions 1.05^−D, 0.90 in the plane. Beside air both sums are over the own phase. PACKING and RAMP are those of
+    the plane; in space they stand for the same stretch.
 
     Density that follows from the motion of neighbours keeps what a particle lacked when it parted: drops that come
     together would count as pressed as soon as they are within 2 h, and stay that far apart. Water with voids bears
@@ -52,18 +54,18 @@ class VoidIndicator(Term):
             (self.indicator,) = arrays.under("water").wide(each, "void_indicator", kept=False)
 
     @staticmethod
-    def numbers(kernel, length: float, sound: float) -> dict[str, float]:
+    def numbers(kernel, length: float, sound: float, axes: int = PLANE) -> dict[str, float]:
         """The constants of F, for a smoothing length (m) and a speed of sound (m/s)."""
         return {
             "relief": sound / length,
-            "plane": plane(kernel) * length,
-            "packing": PACKING,
-            "ramp": 1.0 / RAMP,
+            "plane": plane(kernel, axes) * length,
+            "packing": PACKING ** (axes / PLANE),
+            "ramp": PLANE / (axes * RAMP),
         }
 
     @ti.func
     def add(self, block: ti.template(), pair: ti.template(), sums: ti.template()):
-        """Add a neighbour's Σ V (−W'/r)(r_i − r_j) over the own phase; its half trace is that of `Renormalisation`."""
+        """Add a neighbour's Σ V (−W'/r)(r_i − r_j) over the own phase; the trace is that of `Renormalisation`."""
         for a in ti.static(range(self.particles.axes)):
             sums[self.lean + a] += pair.steep[a]
 
@@ -83,7 +85,7 @@ class VoidIndicator(Term):
         lacking = c.get("plane") * ti.sqrt(dot(lean, lean))
         both = self.matrix.trace(sums) + sums[self.by_walls]
         own = both - block.gas * sums[self.by_walls] if ti.static(c.two) else both
-        indicator = c.get("slope") * (0.5 * own + lacking)
+        indicator = c.get("slope") * ((1.0 / p.axes) * own + lacking)
         p.store(self.indicator, b, indicator)
         if ti.static(self.dispersed.acts):
             whole = (0.5 * c.get("slope")) * (both + self.dispersed.trace(sums))
@@ -133,15 +135,17 @@ class VoidIndicator(Term):
         return found
 
 
-def plane(kernel) -> float:
-    """b/h: the mean, from a plane surface to the depth h, of what it makes half the trace lack over |Σ V ∇W|.
+def plane(kernel, axes: int = PLANE) -> float:
+    """b/h: the mean, from a plane surface to the depth h, of what it makes the trace over D lack over |Σ V ∇W|.
 
-    At a depth z it lacks ½ z w + ∫ w dz from z on, where w is the kernel's integral along the surface and |Σ V ∇W| = w.
+    At a depth z it lacks z w/D + ∫ w dz from z on, where w is the kernel's integral along the surface and |Σ V ∇W| = w
+    (own derivation: of the trace Σ V (−W'/r) r² = D W + div (r W) what is beyond the surface is left out).
     """
     step = 0.01
     z = np.arange(0.0, 2.0 + step, step)
     y = np.arange(-2.0, 2.0 + step, step)
-    across = step * kernel.printed(np.minimum(np.hypot(y[:, None], z[None]), 2.0), 1.0).sum(axis=0)
+    round_it = 1.0 if axes == PLANE else np.pi * np.abs(y[:, None])  # in space a ring at this distance
+    across = step * (round_it * kernel.printed(np.minimum(np.hypot(y[:, None], z[None]), 2.0), 1.0, axes)).sum(axis=0)
     beyond = step * (across[::-1].cumsum()[::-1] - 0.5 * across)
     shallow = z <= 1.0
-    return float((0.5 * z + beyond / np.maximum(across, 1e-30))[shallow].mean())
+    return float((z / axes + beyond / np.maximum(across, 1e-30))[shallow].mean())

@@ -4,6 +4,7 @@ import taichi as ti
 
 from solvers.fluid.state import Particles
 from solvers.fluid.terms.term import Sums, Term
+from solvers.space.symmetric import least_eigenvalue, solved
 
 SINGULAR = 0.05  # smallest eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
 
@@ -18,7 +19,10 @@ class Renormalisation(Term):
 
     def __init__(self, sums: Sums, particles: Particles, constants):
         self.particles, self.constants = particles, constants
-        self.matrix, self.renormalised = sums.room(3), constants.diffusion.renormalised
+        self.renormalised = constants.diffusion.renormalised
+        self.entries = [(a, b) for a in range(particles.axes) for b in range(a, particles.axes)]  # it is symmetric
+        self.diagonal = [n for n, (a, b) in enumerate(self.entries) if a == b]
+        self.matrix = sums.room(len(self.entries))
         if self.renormalised:
             self.gradient = sums.room(particles.axes)
 
@@ -30,28 +34,28 @@ class Renormalisation(Term):
             more = p.deviation[pair.jb, pair.lane] - block.s
             for a in ti.static(range(p.axes)):
                 sums[self.gradient + a] = sums[self.gradient + a] - more * pair.steep[a]
-        sums[self.matrix] += pair.steep[0] * pair.apart[0]
-        sums[self.matrix + 1] += pair.steep[0] * pair.apart[1]
-        sums[self.matrix + 2] += pair.steep[1] * pair.apart[1]
+        for n in ti.static(range(len(self.entries))):
+            sums[self.matrix + n] += pair.steep[self.entries[n][0]] * pair.apart[self.entries[n][1]]
 
     @ti.func
     def end(self, block: ti.template(), sums: ti.template()):
         """Store the smallest eigenvalue of a block's matrices, and their inverses times the raw gradients."""
         p, factor = self.particles, self.constants.get("slope")
-        yy, yz, zz = factor * sums[self.matrix], factor * sums[self.matrix + 1], factor * sums[self.matrix + 2]
-        middle, apart = 0.5 * (yy + zz), 0.5 * (yy - zz)
-        eigenvalue = middle - ti.sqrt(apart * apart + yz * yz)
+        matrix = [factor * sums[self.matrix + n] for n in ti.static(range(len(self.entries)))]
+        eigenvalue = least_eigenvalue(matrix)
         p.store(p.eigenvalue, block.b, eigenvalue)
         if ti.static(self.renormalised):
             gradient = [factor * sums[self.gradient + a] for a in ti.static(range(p.axes))]
             regular = eigenvalue > SINGULAR
-            determinant = ti.select(regular, yy * zz - yz * yz, p.ones())
-            along_y = (zz * gradient[0] - yz * gradient[1]) / determinant
-            along_z = (yy * gradient[1] - yz * gradient[0]) / determinant
-            p.store(p.gradient[0], block.b, ti.select(regular, along_y, p.zeros()))
-            p.store(p.gradient[1], block.b, ti.select(regular, along_z, p.zeros()))
+            found, determinant = solved(matrix, gradient)
+            over = ti.select(regular, determinant, p.ones())
+            for a in ti.static(range(p.axes)):
+                p.store(p.gradient[a], block.b, ti.select(regular, found[a] / over, p.zeros()))
 
     @ti.func
     def trace(self, sums: ti.template()):
         """The trace of the matrix, without the kernel's factor."""
-        return sums[self.matrix] + sums[self.matrix + 2]
+        found = sums[self.matrix]
+        for n in ti.static(self.diagonal[1:]):
+            found += sums[self.matrix + n]
+        return found

@@ -11,8 +11,8 @@ from solvers.fluid.walls.slip_correction import SlipCorrection
 from solvers.fluid.walls.tangential_correction import Leaning, TangentialCorrection
 from solvers.machine.phase import Phase
 from solvers.machine.state import State
-from solvers.motion.poses import AT_START
-from solvers.space.axes import dot
+from solvers.motion.poses import AT_MIDDLE, AT_START
+from solvers.space.axes import dot, swing, turns
 from solvers.tank.load import Load
 
 SEEN = 1e-6  # of full coverage: a wall particle that sees less water has no pressure
@@ -147,13 +147,10 @@ class Extrapolation:
     def felt(self, w, b):
         """g − a_w (m/s²) of a block of wall particles: gravity less the acceleration of the wall."""
         p = self.particles
-        felt = [p.ones() * ti.cast(self.poses.felt[2 + a][w], p.real) for a in ti.static(range(p.axes))]
+        felt = [p.ones() * ti.cast(self.poses.felt[p.axes + a][w], p.real) for a in ti.static(range(p.axes))]
         if ti.static(self.poses.rotating):
             zero = ti.cast(0.0, p.where)
-            y, z = p.offset(b, zero, 0), p.offset(b, zero, 1)
-            rate, up = ti.cast(self.poses.felt[4][w], p.real), ti.cast(self.poses.felt[5][w], p.real)
-            felt[0] += up * z + (rate * rate) * y
-            felt[1] += (rate * rate) * z - up * y
+            self.poses.press(w, [p.offset(b, zero, a) for a in ti.static(range(p.axes))], felt)
         if ti.static(self.bodies.moving):
             self.bodies.hold_back(w, b, felt)
         return felt
@@ -175,8 +172,9 @@ class Extrapolation:
         w = self.units.world(u)
         first, end = self.ranges.walls(u)
         for b in range(first, end):
-            zero = ti.cast(0.0, p.where)
-            rate = ti.cast(self.poses.walls[2][w], p.real)
-            y, z = p.offset(b, zero, 0), p.offset(b, zero, 1)
-            p.store(p.velocity[0], b, ti.cast(self.poses.walls[0][w], p.real) - rate * z)
-            p.store(p.velocity[1], b, ti.cast(self.poses.walls[1][w], p.real) + rate * y)
+            zero, found = ti.cast(0.0, p.where), self.poses.of_walls(w, AT_MIDDLE)
+            speed = [p.ones() * ti.cast(found[a], p.real) for a in ti.static(range(p.axes))]
+            rate = [ti.cast(found[p.axes + k], p.real) for k in ti.static(range(turns(p.axes)))]
+            swing(rate, [p.offset(b, zero, a) for a in ti.static(range(p.axes))], speed)
+            for a in ti.static(range(p.axes)):
+                p.store(p.velocity[a], b, speed[a])

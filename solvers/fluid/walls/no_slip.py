@@ -6,7 +6,7 @@ from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.terms.balance import Balance
 from solvers.fluid.terms.term import Sums, Term
 from solvers.machine.state import Axis, State
-from solvers.space.axes import dot, named
+from solvers.space.axes import dot, named, swing
 
 
 @ti.data_oriented
@@ -49,7 +49,14 @@ class WallDrag(Term):
         self.turns = context.poses.rotating or context.lists.bodies.moving
 
     @ti.func
-    def add_wall(self, block: ti.template(), pair: ti.template(), turning, wall: ti.template(), sums: ti.template()):
+    def add_wall(
+        self,
+        block: ti.template(),
+        pair: ti.template(),
+        turning: ti.template(),
+        wall: ti.template(),
+        sums: ti.template(),
+    ):
         """Add a wall particle, of a wall that is `turning` at this rate (rad/s)."""
         p, c = self.particles, self.constants
         slides = [self.velocity.mirrored[a][pair.jb, pair.lane] - block.speed[a] for a in ti.static(range(p.axes))]
@@ -67,6 +74,5 @@ class WallDrag(Term):
             for a in ti.static(range(p.axes)):
                 wall[a] += (c.strength() * heavy) * slides[a]
             if ti.static(self.turns):
-                lags[0] = lags[0] - turning * pair.apart[1]
-                lags[1] += turning * pair.apart[0]
+                swing(turning, pair.apart, lags)
             sums[self.balance.taken] += heavy * dot(slides, lags)

@@ -12,7 +12,8 @@ from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.no_slip import WallDrag
 from solvers.fluid.walls.wall_push import WallPush
 from solvers.motion.poses import AT_START
-from solvers.space.axes import dot
+from solvers.space.axes import dot, swing, turns
+from solvers.space.tangent import moment
 from solvers.tank.pieces import RATE
 
 
@@ -78,12 +79,15 @@ class WallForces:
     @ti.func
     def turning(self, u, piece):
         """The rate of turning (rad/s) over the earth of the tank, piece 0, or of a part in it, as the step starts."""
-        rate, w = ti.cast(0.0, self.particles.real), self.lists.units.world(u)
+        p, w = self.particles, self.lists.units.world(u)
+        rate = [ti.cast(0.0, p.real) for _ in ti.static(range(turns(p.axes)))]
         if ti.static(self.poses.rotating):
-            rate = ti.cast(self.poses.walls[5][w], self.particles.real)
+            found = self.poses.of_walls(w, AT_START)
+            for k in ti.static(range(turns(p.axes))):
+                rate[k] = ti.cast(found[p.axes + k], p.real)
         if ti.static(self.bodies.moving):  # noqa: SIM102 (compiled only where parts move)
             if piece > 0:
-                rate += ti.cast(self.bodies.poses[w, piece - 1, RATE], self.particles.real)
+                rate[0] += ti.cast(self.bodies.poses[w, piece - 1, RATE], p.real)
         return rate
 
     @ti.func
@@ -109,12 +113,14 @@ class WallForces:
     def on_walls(self, block: ti.template(), wall: ti.template()):
         """Minus the walls' force on a block, and its moment about the tank's origin; the last two entries are zero."""
         p = self.particles
-        total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(5))])
-        turning = block.own[0] * wall[1] - block.own[1] * wall[0]
+        total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(p.axes + turns(p.axes) + 2))])
+        turning = moment(block.own, wall)
         force = [ti.cast(wall[a].sum(), p.exact) for a in ti.static(range(p.axes))]
-        y, z = ti.cast(block.origin[0], p.exact), ti.cast(block.origin[1], p.exact)
-        total[0], total[1] = 0.0 - force[0], 0.0 - force[1]
-        total[2] = 0.0 - (ti.cast(turning.sum(), p.exact) + y * force[1] - z * force[0])
+        swung = moment([ti.cast(block.origin[a], p.exact) for a in ti.static(range(p.axes))], force)
+        for a in ti.static(range(p.axes)):
+            total[a] = 0.0 - force[a]
+        for k in ti.static(range(turns(p.axes))):
+            total[p.axes + k] = 0.0 - (ti.cast(turning[k].sum(), p.exact) + swung[k])
         return total
 
     @ti.func
@@ -132,9 +138,10 @@ class WallForces:
     def walls_at(self, w, origin: ti.template(), own: ti.template()):
         """The velocities (m/s) that the tank's wall would have at the places of a block, at the start of the step."""
         p = self.particles
-        speed = [p.ones() * ti.cast(self.poses.walls[3 + a][w], p.real) for a in ti.static(range(p.axes))]
+        found = self.poses.of_walls(w, AT_START)
+        speed = [p.ones() * ti.cast(found[a], p.real) for a in ti.static(range(p.axes))]
         if ti.static(self.poses.rotating):
-            rate = ti.cast(self.poses.walls[5][w], p.real)
-            speed[0] = speed[0] - rate * (own[1] + ti.cast(origin[1], p.real))
-            speed[1] += rate * (own[0] + ti.cast(origin[0], p.real))
+            rate = [ti.cast(found[p.axes + k], p.real) for k in ti.static(range(turns(p.axes)))]
+            at = [(own[a] + ti.cast(origin[a], p.real)) for a in ti.static(range(p.axes))]
+            swing(rate, at, speed)
         return speed
