@@ -111,8 +111,7 @@ class Poses:
     @ti.func
     def press(self, w, place: ti.template(), felt: ti.template()):
         """Add what the turning of the tank makes walls at a place (lanes of m, a list) feel, m/s²."""
-        real = ti.static(self.real)
-        rate, up = ti.cast(self.felt[4][w], real), ti.cast(self.felt[5][w], real)
+        rate, up = ti.cast(self.felt[4][w], self.real), ti.cast(self.felt[5][w], self.real)
         felt[0] += up * place[1] + (rate * rate) * place[0]
         felt[1] += (rate * rate) * place[1] - up * place[0]
 
