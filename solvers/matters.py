@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from solvers.fluid.given import Fluid
-from solvers.fluid.matter import make_water
+from solvers.fluid.making import make_water
 from solvers.fluid.timestep import limits_of_water
 from solvers.grains.given import Grains
 from solvers.grains.making import make_grains

@@ -2,22 +2,25 @@
 
 import numpy as np
 
+from solvers.machine.quantity import directions
+
 
 def quantities_of(matter, time: float) -> dict[str, np.ndarray]:
     """The quantities of a `solvers.fluid.matter.WaterMatter` at its time (s): (W, *shape) of each by name."""
     sums, thick = matter.diagnostics.sums_at(time, matter.thickness), matter.thickness
     mass = np.maximum(sums["mass"], 1e-300)  # of both phases
-    centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
-    now = [field.to_numpy() for field in matter.diagnostics.now]
-    down = np.stack(now[3:5], axis=1) / max(matter.scene.gravity, 1e-300)
-    potential = sums["mass"] * matter.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
+    axes = directions(matter.particles.axes)
+    centre = np.stack([sums[f"moment_{name}"] for name in axes], axis=1) / mass[:, None]
+    down = np.stack(matter.diagnostics.pulls(), axis=1) / max(matter.scene.gravity, 1e-300)
+    height = matter.diagnostics.now[-1].to_numpy()
+    potential = sums["mass"] * matter.scene.gravity * (height - (centre * down).sum(axis=1)) + sums["pulled"]
     potential += matter.scene.gravity * matter.diagnostics.buoyed(sums, down)
     late = matter.diagnostics.behind.to_numpy()
     (viscous, stored, work), by_parts = matter.forces.counted(late), matter.bodies.work_until(late)
     viscous += matter.damping.total(len(viscous))
     rows = {
         **matter.diagnostics.of_water(sums, mass, centre),
-        "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
+        "water_momentum": np.stack([sums[f"momentum_{name}"] for name in axes], axis=1),
         "water_kinetic": sums["flowing"],
         "water_potential": potential,
         "water_elastic": sums["elastic"],
@@ -27,7 +30,7 @@ def quantities_of(matter, time: float) -> dict[str, np.ndarray]:
         "water_work": (work + by_parts.sum(axis=1)) * thick,
         "water_wall_energy": stored * thick,
         "water_density_deviation": sums["deviation"],
-        "level_depth": matter.diagnostics.level_depth.to_numpy()[:, : matter.diagnostics.levels],
+        "level_depth": matter.diagnostics.gauges.read(),
         "water_escaped": sums["escaped"],
         **matter.gauges.read_and_reset(),
         **matter.edges.read_and_reset(),
@@ -43,11 +46,12 @@ def snapshot_of(matter, time: float) -> dict[str, np.ndarray]:
     Places, velocities relative to the tank (W, n, 2) and pressures (W, n), between grains the porosity (W, n).
     """
     p = matter.particles
-    found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation)
+    vectors = p.place, p.velocity, p.acceleration, [p.deviation]
+    place, velocity, push, [deviation] = (p.read(*fields) for fields in vectors)
     told = {
-        "position": np.stack(found[0:2], axis=-1),
-        "velocity": matter.diagnostics.relative(time, found[0:2], found[2:4], found[4:6], matter.gas),
-        "pressure": matter.diagnostics.whole(matter.constants.pressures(found[6], matter.gas), found[0:2]),
+        "position": np.stack(place, axis=-1),
+        "velocity": matter.diagnostics.relative(time, place, velocity, push, matter.gas),
+        "pressure": matter.diagnostics.whole(matter.constants.pressures(deviation, matter.gas), place),
     }
     rows = {f"{phase}_{name}": told[name][:, part] for phase, part in matter.phases.items() for name in told}
     if p.porous:

@@ -7,6 +7,8 @@ import numpy as np
 from solvers.fluid.constants import FASTEST
 from solvers.fluid.state import allowed
 from solvers.machine.errors import BadState, Unavailable
+from solvers.machine.quantity import DIRECTIONS, PLANE
+from solvers.tank.solids.solid import Prism
 
 CREATED = 0.1  # of the energy exchanged: what may be missing from the account before a run is stopped
 LEAST = 1e-3  # Mach number of water that has so little energy that none can be missed
@@ -18,25 +20,26 @@ LIFTED = 'water.shifting = "delta-plus" lifts water below a surface; take "delta
 def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
     """What `refuse_state` asks of the particles in a world of a `solvers.fluid.matter.WaterMatter` at `time` (s)."""
     p = matter.particles
-    found = p.read(*p.place, *p.velocity, *p.acceleration, p.deviation, p.eigenvalue, p.mass)
-    velocity = matter.diagnostics.relative(time, found[0:2], found[2:4], found[4:6], matter.gas)[world]
-    place, speed = np.stack(found[0:2], axis=-1)[world], np.linalg.norm(velocity, axis=1)
+    places, *rest = (p.read(*fields) for fields in (p.place, p.velocity, p.acceleration))
+    found = p.read(p.deviation, p.eigenvalue, p.mass)
+    velocity = matter.diagnostics.relative(time, places, *rest, matter.gas)[world]
+    place, speed = np.stack(places, axis=-1)[world], np.linalg.norm(velocity, axis=1)
     told = {
         "place": place,
         "speed": np.where(outside(place, matter.order.grid.watched), 0.0, speed),
         **{
             name: values[world]
-            for name, values in (("deviation", found[6]), ("eigenvalue", found[7]), ("gas", matter.gas))
+            for name, values in (("deviation", found[0]), ("eigenvalue", found[1]), ("gas", matter.gas))
         },
     }
-    there = np.isfinite(found[8][world])  # without those that have not entered
+    there = np.isfinite(found[2][world])  # without those that have not entered
     return {name: values[there] for name, values in told.items()}
 
 
 def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, sound: float) -> None:
     """Raise BadState for a world whose particles made the watch stop it at `time` (s).
 
-    `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, zero for those that have left an
+    `particles` have their "place" (n, D) m, "speed" (n,) m/s relative to the tank, zero for those that have left an
     open one, "deviation" (n,) of density, "eigenvalue" (n,), and "gas" (n,), 1 for air; `sound` is c0 in m/s.
     """
     remedy = REMEDY
@@ -53,7 +56,8 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
         worst = (np.abs(deviation) / allowed(particles["eigenvalue"])).argmax()
         whose, remedy = ("air", SQUEEZED) if particles["gas"][worst] else ("water", REMEDY)
         what, at = f"the {whose}'s density is off by {100.0 * deviation[worst]:.3g} %", place[worst]
-    raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {remedy}.")
+    where = ", ".join(f"{name} = {one:.4g} m" for name, one in zip(DIRECTIONS, at, strict=False))
+    raise BadState(world, f"{what} at {where}, t = {time:.4g} s; {remedy}.")
 
 
 def check_water(
@@ -114,3 +118,25 @@ def refuse_scene(fills: Sequence[int], hold: int | None) -> None:
     """
     if hold is not None and fills[hold]:
         raise Unavailable("water: grains in water are not computed yet; give them tanks of their own.")
+
+
+def refuse_space(scene) -> None:
+    """Raise Unavailable, one sentence, for a scene in space with something that water has in the plane alone."""
+    water = scene.fluid.water
+    if scene.axes == PLANE:
+        return
+    plane_alone = {
+        "air": bool(water.air),
+        "parts": bool(scene.parts),
+        "gauges": bool(water.gauges or water.levels or water.edges),
+        "damping zones": bool(water.damping),
+        "several tanks": bool(scene.more_tanks),
+        "a ship or an axle": bool(scene.vessels or scene.axles),
+        "grains beside it": bool(scene.grains),
+        "end walls that hold it back": water.gap > 0.0,
+        "a pull to a point": water.pull is not None,
+        "tanks other than prisms": not isinstance(scene.solid, Prism),
+    }
+    for name, there in plane_alone.items():
+        if there:
+            raise Unavailable(f"water: {name} in space cannot be computed yet; leave tank.along out, or {name}.")

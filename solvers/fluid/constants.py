@@ -14,8 +14,8 @@ from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
 from solvers.fluid.surface.reinitialisation import Reinitialisation
 from solvers.fluid.surface.void_indicator import VoidIndicator
+from solvers.fluid.terms.end_walls import EndWallFriction
 from solvers.fluid.viscosity import VISCOSITY
-from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.fluid.walls.layers import FIRM
 from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
@@ -65,7 +65,7 @@ class Constants:
             "background": water.background,
             "thinnest": float(self.state.deviation(-water.background / (water.density * sound**2))),
             "spread": water.delta * length * sound,  # δ h c0, m²/s
-            "strength": self.viscosity.strength(water),
+            "strength": self.viscosity.strength(water, self.axes),
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
             "spacing": water.spacing,
             "reach": water.reach,

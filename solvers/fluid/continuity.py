@@ -4,11 +4,11 @@ import taichi as ti
 
 from solvers.fluid.forces import Forces
 from solvers.fluid.lists.context import FluidContext
+from solvers.fluid.phases.slip_correction import SlidImage
 from solvers.fluid.terms.carried_momentum import CarriedMomentum
 from solvers.fluid.terms.density_diffusion import DensityDiffusion
 from solvers.fluid.terms.term import Block, Pair, Sums, Term, doing
 from solvers.fluid.walls.divergence_correction import Closing
-from solvers.fluid.walls.slip_correction import SlidImage
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot

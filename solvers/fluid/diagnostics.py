@@ -11,50 +11,57 @@ from solvers.fluid.constants import Constants
 from solvers.fluid.lists.order import Order
 from solvers.fluid.phases import quantities as of_air
 from solvers.fluid.state import UNUSED, Particles
-from solvers.machine.quantity import places
-from solvers.machine.state import Axis, State, padded, roomy
+from solvers.fluid.surface.level_gauges import LevelGauges
+from solvers.machine.quantity import PLANE, places
+from solvers.machine.state import Axis, State
 from solvers.motion.frame import turned
-from solvers.space.axes import dot
+from solvers.motion.poses import Poses
+from solvers.motion.poses_in_space import PosesInSpace
+from solvers.motion.prescribed_in_space import PLACE, RATE, VELOCITY, part, seen
+from solvers.space.axes import UP, dot, named, named_turns, swing, turns
+from solvers.tank.solids.making import AnyWalls
 from solvers.tank.walls import Walls
 
 CHUNK = 64  # blocks whose sum one thread takes
 DENSE = 0.03  # deviation of the density from which it is counted
 NEVER = -1.0
-USUAL = 8  # level gauges for which there is room at least
-SUMS = (
-    *("mass", "moment_y", "moment_z", "momentum_y", "momentum_z", "moving", "flowing", "pulled", "elastic", "dense"),
-    *(
-        "air_mass",
-        "air_y",
-        "air_z",
-        "air_flowing",
-        "air_pressed",
-        "air_volume",
-    ),  # of two phases: the air's part of these
-    *("deviation", "escaped", "air_density_deviation"),  # largest values, not sums
-)
+LARGEST = "deviation", "escaped", "air_density_deviation"  # largest values, not sums
+
+
+def sums_of(axes: int) -> tuple[str, ...]:
+    """Names of what is summed over the particles in a scene of so many axes, and at the end LARGEST."""
+    moments, momenta, of_air = (named(what, axes) for what in ("moment", "momentum", "air"))
+    energies = "moving", "flowing", "pulled", "elastic", "dense"
+    air = "air_mass", *of_air, "air_flowing", "air_pressed", "air_volume"  # of two phases: the air's part of these
+    return "mass", *moments, *momenta, *energies, *air, *LARGEST
 
 
 @dataclass(frozen=True)
 class Pool:
     """The tanks of the water: their walls, whose water is whose, and whether it may leave none of them (`closed`).
 
-    Of the first with water its number and the places `sides` (m) of its corners along y.
+    Of the first with water its number and the places `sides` (m) of its corners along y. In space `walls` are those
+    of the outline, which is drawn out from −`half` to `half` (m). `poses` are the tanks'.
     """
 
     walls: Walls
     order: Order
+    poses: Poses | PosesInSpace
     closed: bool
     first: int
     sides: np.ndarray
+    half: float = 0.0
 
     @classmethod
-    def of(cls, scene, walls: Walls, order: Order) -> "Pool":
+    def of(cls, scene, walls: AnyWalls, order: Order, poses: Poses | PosesInSpace) -> "Pool":
         """The tanks of a scene (`solvers.scene.Scene`)."""
         wet = [number for number, fill in enumerate(scene.fills) if fill]
         shut = scene.fluid.water.walls and not any(scene.tanks[number].open_edges for number in wet)
         sides = scene.tanks[wet[0]].outline[:, 0]
-        return cls(walls, order, shut and not scene.fluid.water.periodic, wet[0], sides)
+        closed, half = shut and not scene.fluid.water.periodic, 0.0
+        if scene.solid:
+            walls, half = walls.section, scene.solid.half(scene.outline)
+        return cls(walls, order, poses, closed, wet[0], sides, half)
 
 
 @ti.data_oriented
@@ -67,32 +74,31 @@ class Diagnostics:
 
     def __init__(self, arrays: State, particles: Particles, constants: Constants, carrier, pool: Pool, levels):
         self.particles, self.constants, self.carrier = particles, constants, carrier
-        self.walls, self.order, self.first = pool.walls, pool.order, pool.first
+        self.walls, self.order = pool.walls, pool.order
+        self.poses = pool.poses
         self.exact, self.closed = arrays.exact, pool.closed
         listed = *quantities.SERIES, *(of_air.SERIES if particles.two else ()), quantities.ESCAPED
         self.quantities = tuple(quantity.within(particles.axes) for quantity in listed)
-        self.at = SimpleNamespace(**{name: k for k, name in enumerate(SUMS)})
+        axes, self.names = particles.axes, sums_of(particles.axes)
+        self.at = SimpleNamespace(**{name: k for k, name in enumerate(self.names)})
+        self.at.moment, self.at.momentum, self.at.air = self.at.moment_y, self.at.momentum_y, self.at.air_y
         self.columns = places(self.quantities)
         own, world = arrays.under("water.diagnostics"), Axis("world", particles.worlds)
         self.chunks = -(-particles.fluid_blocks // CHUNK)
         sums = world, Axis("chunk", self.chunks)
-        self.sums = own.reals(sums, *SUMS, kind=arrays.exact, kept=False)
-        names = "tank_y", "tank_z", "tank_rate", "pull_y", "pull_z", "height"
+        self.sums = own.reals(sums, *self.names, kind=arrays.exact, kept=False)
+        names = *named("tank", axes), *named_turns("tank_rate", axes), *named("pull", axes), "height"
+        self.pull, self.about = axes + turns(axes), turns(axes)  # where in `now` gravity is; axes of turning
         self.now = own.reals((world,), *names, kind=arrays.exact, kept=False)
         (self.behind,) = own.reals((world,), "behind", kind=arrays.exact)
-        self.levels, room = len(levels), roomy(len(levels), USUAL)
-        places_y = padded(np.array([level.y for level in levels]), room)
-        self.level_number = own.holding("level_number", np.array([self.levels]), "one", ti.i32)
-        self.level_y = own.holding("level_y", places_y, "level", arrays.exact)
-        sides = pool.sides.min(), pool.sides.max()
-        self.level_sides = own.holding("level_sides", np.array(sides), "side", arrays.exact)
-        (self.level_depth,) = own.reals((world, Axis("level", room)), "level_depth", kept=False)
+        self.ends = own.holding("ends", np.array([pool.half]), "one", arrays.exact)
+        self.gauges = LevelGauges(arrays, particles, constants, self.order, levels, (pool.first, pool.sides))
 
     def sums_at(self, time: float, thickness: float) -> dict[str, np.ndarray]:
-        """Sums of every world at `time` (s), (W, …) by the names of `SUMS`, for a tank of `thickness` (m)."""
+        """Sums of every world at `time` (s), (W, …) by their names, for a tank of `thickness` (m), in space 1."""
         self.count(time)
-        found = {name: field.to_numpy() for name, field in zip(SUMS, self.sums, strict=True)}
-        extreme = {name: found.pop(name).max(axis=1) for name in ("deviation", "escaped", "air_density_deviation")}
+        found = {name: field.to_numpy() for name, field in zip(self.names, self.sums, strict=True)}
+        extreme = {name: found.pop(name).max(axis=1) for name in LARGEST}
         return {name: values.sum(axis=1) * thickness for name, values in found.items()} | extreme
 
     def of_water(self, sums: dict[str, np.ndarray], mass: np.ndarray, centre: np.ndarray) -> dict[str, np.ndarray]:
@@ -120,11 +126,15 @@ class Diagnostics:
         of_all = np.stack([sums["moment_y"], sums["moment_z"]], axis=1)
         return ((share * (of_all - of_air) + of_air) * down).sum(axis=1)
 
+    def pulls(self) -> list[np.ndarray]:
+        """Gravity (W,) m/s² along each of the tank's axes, as last noted."""
+        return [field.to_numpy() for field in self.now[self.pull : self.pull + self.particles.axes]]
+
     def whole(self, pressure: np.ndarray, place: list[np.ndarray]) -> np.ndarray:
         """The pressures (W, n) Pa at `place` (y and z), from those that are found, which may be reduced ones."""
         if not self.constants.modified:
             return pressure
-        pull = np.stack([field.to_numpy() for field in self.now[3:5]], axis=1)
+        pull = np.stack(self.pulls(), axis=1)
         return pressure + self.constants.reduced.head(self.constants.numbers, pull, np.stack(place, axis=-1))
 
     @ti.kernel
@@ -134,9 +144,8 @@ class Diagnostics:
             self.note_now(w, time)
         for w, chunk in self.sums[0]:
             self.sum_chunk(w, chunk)
-        for w, level in self.level_depth:
-            if level < self.level_number[0]:
-                self.measure_level(w, level)
+        for w, level in self.gauges.depth:
+            self.gauges.measure(w, level)
 
     @ti.kernel
     def note(self, time: ti.f64):
@@ -148,8 +157,15 @@ class Diagnostics:
     def note_now(self, w, time):
         """Note how the tank of a world moves at a time (s)."""
         gravity = self.carrier.gravity[0]
-        self.now[3][w], self.now[4][w] = 0.0, -gravity
-        if ti.static(self.carrier.moving):
+        self.now[self.pull + UP][w] = -gravity
+        if ti.static(self.carrier.moving and self.particles.axes > PLANE):
+            m = self.poses.motion(w, time)
+            velocity, rate = seen(m, part(m, VELOCITY)), seen(m, part(m, RATE))
+            pull = seen(m, [0.0 * gravity, -gravity, 0.0 * gravity])
+            for a in ti.static(range(3)):
+                self.now[a][w], self.now[3 + a][w], self.now[6 + a][w] = velocity[a], rate[a], pull[a]
+            self.now[9][w] = m[PLACE + UP]
+        elif ti.static(self.carrier.moving):
             pose = self.carrier.kinematics(w, time)
             velocity, pull = turned(pose[3], pose[4], -pose[2]), turned(0.0, -gravity, -pose[2])
             self.now[0][w], self.now[1][w], self.now[2][w] = velocity[0], velocity[1], pose[5]
@@ -159,7 +175,7 @@ class Diagnostics:
     def sum_chunk(self, w, chunk):
         """Sums over one chunk of blocks."""
         p, c = self.particles, self.constants
-        sums = [ti.cast(0.0, self.exact) for _ in ti.static(range(len(SUMS)))]
+        sums = [ti.cast(0.0, self.exact) for _ in ti.static(range(len(self.names)))]
         sums[self.at.escaped] = NEVER
         start = w * p.stride
         sound = ti.cast(c.get("stiffness") / c.get("density"), self.exact)
@@ -170,15 +186,12 @@ class Diagnostics:
                     m *= self.order.weight(b)
                     r = [ti.cast(p.place[a][b, lane], self.exact) for a in ti.static(range(p.axes))]
                     u = self.velocity_now(w, b, lane)
-                    v = [
-                        u[0] - self.now[0][w] + self.now[2][w] * r[1],
-                        u[1] - self.now[1][w] - self.now[2][w] * r[0],
-                    ]
+                    v = [(u[a] - self.now[a][w]) for a in ti.static(range(p.axes))]
+                    swing([(0.0 - self.now[p.axes + k][w]) for k in ti.static(range(self.about))], r, v)
                     sums[self.at.mass] += m
-                    sums[self.at.moment_y] += m * r[0]
-                    sums[self.at.moment_z] += m * r[1]
-                    sums[self.at.momentum_y] += m * u[0]
-                    sums[self.at.momentum_z] += m * u[1]
+                    for a in ti.static(range(p.axes)):
+                        sums[self.at.moment + a] += m * r[a]
+                        sums[self.at.momentum + a] += m * u[a]
                     sums[self.at.moving] += 0.5 * m * dot(u, u)
                     sums[self.at.flowing] += 0.5 * m * dot(v, v)
                     if ti.static(c.pulled):
@@ -199,9 +212,10 @@ class Diagnostics:
                         sums[self.at.deviation] = ti.max(sums[self.at.deviation], ti.abs(s))
                     if ti.static(self.closed):
                         dent = 0.5 + p.gas_at(b, lane)  # spacings: water may squeeze air into a wall
-                        if self.is_out(w, self.order.layer(b), [p.place[0][b, lane], p.place[1][b, lane]], dent):
+                        place = [p.place[a][b, lane] for a in ti.static(range(p.axes))]
+                        if self.is_out(w, self.order.layer(b), place, dent):
                             sums[self.at.escaped] = ti.max(sums[self.at.escaped], p.number[b, lane])
-        for k in ti.static(range(len(SUMS))):
+        for k in ti.static(range(len(self.names))):
             self.sums[k][w, chunk] = sums[k]
 
     @ti.func
@@ -216,13 +230,15 @@ class Diagnostics:
             sums[self.at.elastic] += m * pull / c.get("air_density") * c.cohesion.energy(s)
             sums[self.at.air_pressed] += volume * pull * c.cohesion.share(s)
         sums[self.at.air_mass] += m
-        sums[self.at.air_y] += m * r[0]
-        sums[self.at.air_z] += m * r[1]
+        for a in ti.static(range(self.particles.axes)):
+            sums[self.at.air + a] += m * r[a]
         sums[self.at.air_flowing] += 0.5 * m * dot(v, v)
         sums[self.at.air_volume] += volume
         sums[self.at.air_pressed] += volume * stiffness * c.gas.share(s)
         if ti.static(c.modified):
-            sums[self.at.air_pressed] += volume * c.reduced.above(c, [self.now[3][w], self.now[4][w]], r)
+            sums[self.at.air_pressed] += volume * c.reduced.above(
+                c, [self.now[self.pull + a][w] for a in ti.static(range(2))], r
+            )
         sums[self.at.air_density_deviation] = ti.max(sums[self.at.air_density_deviation], ti.abs(s))
 
     @ti.func
@@ -243,13 +259,15 @@ class Diagnostics:
             for feature in range(self.walls.features):
                 if self.walls.near(feature, shift, near, y, z):
                     out = False
+        if ti.static(self.particles.axes > PLANE):
+            out = out or ti.abs(place[2]) > self.ends[0] + near
         return out
 
     @ti.func
     def velocity_now(self, w, b, lane):
         """Velocity (m/s) of a particle over the earth now, in the tank's axes: that kept, and half a kick."""
         p, c, half = self.particles, self.constants, self.behind[w]
-        pull = [self.now[3 + a][w] for a in ti.static(range(p.axes))]
+        pull = [self.now[self.pull + a][w] for a in ti.static(range(p.axes))]
         if ti.static(c.modified):
             for a in ti.static(range(p.axes)):
                 pull[a] *= ti.cast(c.reduced.sinking(c, p.gas_at(b, lane)), self.exact)
@@ -259,42 +277,20 @@ class Diagnostics:
             for a in ti.static(range(p.axes))
         ]
 
-    @ti.func
-    def measure_level(self, w, level):
-        """Depth at a level gauge: the water's volume around it, weighted by a one-dimensional kernel."""
-        p = self.particles
-        reach, y = ti.cast(self.constants.get("reach"), self.exact), self.level_y[level]
-        total = ti.cast(0.0, self.exact)
-        for b in range(w * p.stride, w * p.stride + p.used[w]):
-            for lane in range(p.lanes):
-                if p.number[b, lane] != UNUSED and self.order.layer(b) == self.first:
-                    t = 1.0 - ti.abs(ti.cast(p.place[0][b, lane], self.exact) - y) / reach
-                    if t > 0.0 and p.gas_at(b, lane) < 0.5:
-                        total += ti.cast(p.volume[b, lane], self.exact) * t * t * (3.0 - 2.0 * t)
-        left, right = (y - self.level_sides[0]) / reach, (self.level_sides[1] - y) / reach
-        self.level_depth[w, level] = ti.cast(total / (reach * (self.covered(left) + self.covered(right))), p.real)
-
-    @ti.func
-    def covered(self, x):
-        """∫ from 0 to x of the kernel t² (3 − 2 t), t = 1 − x, which is 1/2 from x = 1 on."""
-        t = 1.0 - ti.max(0.0, ti.min(1.0, x))
-        return 0.5 - t * t * t * (1.0 - 0.5 * t)
-
     def relative(self, time: float, place, velocity, push, gas: np.ndarray) -> np.ndarray:
-        """Velocities (W, n, 2) m/s relative to the tank at `time` (s), from those kept and the last accelerations.
+        """Velocities (W, n, D) m/s relative to the tank at `time` (s), from those kept and the last accelerations.
 
-        Of each two (W, n) along y and z; `gas` (W, n) is 1 for air.
+        Of each D (W, n) along the axes; `gas` (W, n) is 1 for air.
         """
         self.note(time)
-        tank_y, tank_z, rate, pull_y, pull_z, _ = (field.to_numpy()[:, None] for field in self.now)
-        half = self.behind.to_numpy()[:, None]
+        axes, half, sinks = self.particles.axes, self.behind.to_numpy()[:, None], 1.0
+        now = [field.to_numpy()[:, None] for field in self.now]
         if self.constants.modified:
             sinks = (1.0 - gas) * (1.0 - self.constants.numbers["buoyed"])
-            pull_y, pull_z = pull_y * sinks, pull_z * sinks
-        return np.stack(
-            [
-                velocity[0] + half * (push[0] + pull_y) - tank_y + rate * place[1],
-                velocity[1] + half * (push[1] + pull_z) - tank_z - rate * place[0],
-            ],
-            axis=-1,
-        )
+        found = [velocity[a] + half * (push[a] + now[self.pull + a] * sinks) - now[a] for a in range(axes)]
+        rate = now[axes : self.pull]
+        if axes == PLANE:
+            swung = [-rate[0] * place[1], rate[0] * place[0]]
+        else:
+            swung = [rate[a - 2] * place[a - 1] - rate[a - 1] * place[a - 2] for a in range(axes)]
+        return np.stack([one - own for one, own in zip(found, swung, strict=True)], axis=-1)

@@ -9,13 +9,13 @@ from solvers.fluid.phases.interfaces import InterfaceForce
 from solvers.fluid.phases.tension import Tension
 from solvers.fluid.surface.void_indicator import VoidIndicator
 from solvers.fluid.terms.balance import Balance
+from solvers.fluid.terms.end_walls import EndWallFriction
 from solvers.fluid.terms.phase_gradient import PhaseGradient
 from solvers.fluid.terms.renormalisation import Renormalisation
 from solvers.fluid.terms.shift import Shift
 from solvers.fluid.terms.surface_normal import SurfaceNormal
 from solvers.fluid.terms.term import Block, Pair, Sums, Term, doing
 from solvers.fluid.terms.viscous_force import ViscousForce
-from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.wall_forces import WallForces
 from solvers.machine.quantity import freedoms

@@ -86,7 +86,7 @@ class Water:
     compressible liquid. `kernel`, `state`, `diffusion` and `viscosity` are names of the registries. `delta` is the
     strength δ of the diffusion of density; `alpha` that of the artificial viscosity, or `kinematic` ν (m²/s) that of
     laminar flow. `slip`: water slides freely along walls, else it sticks to them. `gap`: the gap (m) between the end
-    walls, before and behind, that hold it back, too (`solvers.fluid.walls.end_walls`), 0: there are none. `full`: the
+    walls, before and behind, that hold it back, too (`solvers.fluid.terms.end_walls`), 0: there are none. `full`: the
     tank has no free surface, so that walls may pull, and `background` is the pressure (Pa) that all of the fluid bears
     besides (Adami, Hu & Adams 2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their
     distances, for water of up to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it

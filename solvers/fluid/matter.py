@@ -7,10 +7,15 @@ import taichi as ti
 
 from solvers.fluid.account import quantities_of, snapshot_of
 from solvers.fluid.bodies.bodies import Bodies
-from solvers.fluid.checks import LEAST, check_water, refuse_reduced, refuse_scene, refuse_state, residual, suspects
+from solvers.fluid.checks import (
+    LEAST,
+    check_water,
+    refuse_state,
+    residual,
+    suspects,
+)
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
-from solvers.fluid.damping import DampingZones
 from solvers.fluid.diagnostics import Diagnostics, Pool
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import Fluid
@@ -24,17 +29,19 @@ from solvers.fluid.mover import Mover
 from solvers.fluid.phases.sound_switch import SoundSwitch
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, Particles
+from solvers.fluid.terms.damping import DampingZones
 from solvers.fluid.walls.added_mass import wall_added_mass
 from solvers.fluid.walls.divergence_correction import DivergenceCorrection
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
+from solvers.fluid.walls.prism_layers import layers_of
 from solvers.fluid.walls.tangential_correction import TangentialCorrection
-from solvers.fluid.walls.wall_layers import WallLayers
 from solvers.machine.phase import Phase
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_slab
-from solvers.motion.poses import Poses
+from solvers.motion.poses_in_space import poses_of
 from solvers.ship.body import Body, frozen
 from solvers.tank.context import Context
 from solvers.tank.matter import Matter
@@ -55,13 +62,15 @@ class WaterMatter(Matter):
         arrays, worlds, tank, count = context.arrays, context.worlds, scene.tanks[0], fluid.count
         lanes = LANES if context.wide and not context.per_particle else 1
         self.wide = lanes > 1
-        layers = WallLayers(water, scene.tanks, scene.fills)
-        grid = grid_round(water, fluid.particles["position"], scene.tanks, context.walls.bounds, lanes)
+        layers, along = layers_of(scene, water), 2.0 * scene.solid.half(tank.outline) if scene.solid else 0.0
+        grid = grid_round(water, fluid.particles["position"], scene.tanks, context.walls.bounds, lanes, along)
         slots, blocks, first = grid.arranged(layers.points, layers.tanks)
+        layers.blocks = len(blocks)
         self.bodies = Bodies(arrays, context.parts, water, scene, lanes)
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.nearing, self.gas = self.bodies.fastest, fluid.particles["gas"].astype(float)
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
+        thickness = tank.thickness if context.axes == PLANE else 1.0  # in space particles have volumes
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
         sizes = context.axes, worlds, count, lanes, walls, grid.strips
         kinds = shifting, water.air, context.among, water.gap > 0.0, scene.mixture is not None
@@ -72,8 +81,8 @@ class WaterMatter(Matter):
         self.load.lag(wall_added_mass(scene, layers), water.added_mass == "layer")
         self.wall_points = slots, blocks, layers.volumes, layers.firm
         self.ranges = ranges = WorkRanges(p, units)
-        self.constants = Constants(arrays, water, scene.gravity)
-        self.poses = Poses(arrays, context.carrier, worlds, fluid.substeps > 1)
+        self.constants = Constants(arrays, water, scene.gravity, p.axes)
+        self.poses = poses_of(arrays, context.carrier, worlds, fluid.substeps > 1, p.axes)
         of_parts = np.array(self.bodies.tanks, dtype=int)[self.bodies.solids.owner]
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, slots, layers.tanks, of_parts))
         self.bodies.join(arrays, p, self.order, ranges, self.poses, units)
@@ -81,8 +90,8 @@ class WaterMatter(Matter):
         self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.substeps)
         self.context = shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
         tangential = TangentialCorrection(arrays, shared, layers, slots, scene.tanks)
-        self.extrapolation = Extrapolation(arrays, shared, tangential, self.load, tank.thickness)
-        self.forces = Forces(arrays, shared, self.extrapolation, self.load, tank.thickness)
+        self.extrapolation = Extrapolation(arrays, shared, tangential, self.load, thickness)
+        self.forces = Forces(arrays, shared, self.extrapolation, self.load, thickness)
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
         self.has_multiples = self.sound_switch.has_multiples
         self.continuity = Continuity(arrays, shared, self.forces)
@@ -91,11 +100,11 @@ class WaterMatter(Matter):
         self.mover = Mover(arrays, shared, self.extrapolation, self.forces.voids, substeps, self.damping)
         probes = [slots[slot] + p.fluid_blocks * lanes for slot in layers.probes]
         self.gauges = Gauges(arrays, p, self.constants, self.poses, water.gauges, probes, layers.open)
-        pool = Pool.of(scene, context.walls, self.order)
+        pool = Pool.of(scene, context.walls, self.order, self.poses)
         self.edges = Edges(arrays, shared, self.extrapolation, layers, slots, scene.tanks, pool.first, water)
         self.diagnostics = Diagnostics(arrays, p, self.constants, context.carrier, pool, water.levels)
-        self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
-        mass = water.density * fluid.particles["volume"].sum(axis=1).max() * tank.thickness
+        self.start, self.thickness = np.full(worlds, np.nan), thickness  # J, energy at the first look; m
+        mass = water.density * fluid.particles["volume"].sum(axis=1).max() * thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         passage, rest = [Phase(self.note_passage)], self.extrapolation.coupling.between
         self.before = substeps.first(self._before())
@@ -284,12 +293,3 @@ class WaterMatter(Matter):
         """Restore what `state` returned."""
         self.start = np.array(state["water_start"])
         self.sound_switch.restore(state, self.scene.gravity)
-
-
-def make_water(scene, context: Context) -> WaterMatter | None:
-    """The water of a scene (`solvers.scene.Scene`); None where they do not move one by one. Raises Unavailable."""
-    if not scene.fluid.moved:
-        return None
-    refuse_scene(scene.fills, scene.hold if scene.grains and not scene.mixture else None)
-    refuse_reduced(scene)
-    return WaterMatter(scene, context)

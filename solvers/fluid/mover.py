@@ -3,10 +3,10 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.damping import DampingZones
 from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, THINNEST
 from solvers.fluid.surface.void_indicator import VoidIndicator
+from solvers.fluid.terms.damping import DampingZones
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START

@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Air, Water
-from solvers.fluid.walls.end_walls import MODES
+from solvers.fluid.terms.end_walls import MODES
 from solvers.machine.memory import KINDS
 from solvers.machine.state import Axis, State, roomy
 from solvers.space.axes import named
@@ -160,8 +160,9 @@ class Particles:
         held = [np.zeros(len(blocks) * self.lanes, kind) for kind in (float, float, int)]
         held[2][:] = UNUSED
         held[0][slots], held[1][slots], held[2][slots] = volume, firm, np.arange(len(slots))
-        both = zip((blocks, *held), (solids.places, solids.volumes, solids.firm, solids.numbers), strict=True)
-        places, *rest = (np.concatenate([tank.reshape(-1, *body.shape[1:]), body]) for tank, body in both)
+        of_tanks = blocks, *(one.reshape(-1, self.lanes) for one in held)
+        both = zip(of_tanks, (solids.places, solids.volumes, solids.firm, solids.numbers), strict=True)
+        places, *rest = (np.concatenate([tank, body]) if len(body) else tank for tank, body in both)
         fields = *self.place, self.volume, self.firm, self.number
         for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *rest], strict=True):
             whole = field.to_numpy().reshape(self.worlds, self.stride, self.lanes)

@@ -4,10 +4,11 @@ from dataclasses import replace
 from math import inf, pi, sqrt
 
 from solvers.fluid.given import Water
+from solvers.fluid.terms.end_walls import EndWallFriction
 from solvers.fluid.viscosity import LAMINAR
-from solvers.fluid.walls.end_walls import EndWallFriction
 from solvers.grains.timestep import shortest_collision
 from solvers.machine.limit import Limit
+from solvers.machine.quantity import PLANE
 
 COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
 OF_AIR = 0.5  # likewise of air, which is faster than its sound where water squeezes it out
@@ -50,7 +51,7 @@ def limits_of_water(scene, closing: float = 0.0) -> list[Limit]:
     pushed += sum(_shaken(motion, scene.span) for motion in scene.motions[0])
     if pushed > SLOW:
         bounds.append(Limit(FORCED * sqrt(length / pushed), f"{FORCED:g} √(h/a) at {pushed:.3g} m/s²", firm=True))
-    viscosity = max(kinematic(water), kinematic(of_air(water)) if water.air else 0.0)
+    viscosity = max(kinematic(water, scene.axes), kinematic(of_air(water)) if water.air else 0.0)
     if viscosity > 0.0:
         bounds.append(Limit(SPREAD * length**2 / viscosity, f"{SPREAD:g} h²/ν at {viscosity:.3g} m²/s", firm=True))
     if water.gap > 0.0:
@@ -117,14 +118,14 @@ def of_air(water: Water) -> Water:
     return replace(water, density=air.density, sound_speed=air.sound_speed, alpha=air.alpha, kinematic=air.kinematic)
 
 
-def kinematic(water) -> float:
-    """Kinematic viscosity ν (m²/s): as given, or that of the artificial viscosity, α h c0/(2 (D + 2)), D = 2.
+def kinematic(water, axes: int = PLANE) -> float:
+    """Kinematic viscosity ν (m²/s): as given, or that of the artificial viscosity, α h c0/(2 (D + 2)), D axes.
 
     Monaghan (2005), eq. 8.8: the term α h c0 of pairs of neighbours is that of a liquid with this viscosity.
     """
     if water.viscosity in LAMINAR:
         return water.kinematic
-    return water.alpha * water.length * water.sound_speed / 8.0
+    return water.alpha * water.length * water.sound_speed / (2.0 * (axes + 2))
 
 
 def water_speed(scene) -> float:

@@ -32,6 +32,21 @@ def aside(axis: ti.template(), v: ti.template()):
     return [parts[(a - axis) % SPACE] for a in ti.static(range(SPACE))]
 
 
+@ti.func
+def part(m: ti.template(), begin: ti.template()):
+    """The vector of a motion (a list) that begins at a number."""
+    return [m[begin + a] for a in ti.static(range(SPACE))]
+
+
+@ti.func
+def seen(m: ti.template(), v: ti.template()):
+    """A vector v over the earth (a list) in the axes of a tank that moves so, Rᵀ v."""
+    return [
+        m[TURN + a] * v[0] + m[TURN + SPACE + a] * v[1] + m[TURN + 2 * SPACE + a] * v[2]
+        for a in ti.static(range(SPACE))
+    ]
+
+
 @ti.data_oriented
 class PrescribedInSpace(Driven):
     """Prescribed motion of a tank with all six freedoms: motions applied one after the other, as in the plane.
@@ -83,8 +98,8 @@ class PrescribedInSpace(Driven):
         """Turn a motion m about an axis by an angle with rate and acceleration q, the centre in the table."""
         c, s = ti.cos(q[0]), ti.sin(q[0])
         arm = about(axis, c, s, [m[PLACE + a] - self.table[w, first + a] for a in ti.static(range(SPACE))])
-        speed, gain = about(axis, c, s, self.part(m, VELOCITY)), about(axis, c, s, self.part(m, GAIN))
-        rate, rise = about(axis, c, s, self.part(m, RATE)), about(axis, c, s, self.part(m, RISE))
+        speed, gain = about(axis, c, s, part(m, VELOCITY)), about(axis, c, s, part(m, GAIN))
+        rate, rise = about(axis, c, s, part(m, RATE)), about(axis, c, s, part(m, RISE))
         swung, pushed, bent = aside(axis, arm), aside(axis, speed), aside(axis, rate)
         inward = aside(axis, swung)
         for a in ti.static(range(SPACE)):
@@ -101,24 +116,11 @@ class PrescribedInSpace(Driven):
                 m[TURN + SPACE * row + column] = image[row]
 
     @ti.func
-    def part(self, m: ti.template(), begin: ti.template()):
-        """The vector of a motion (a list) that begins at a number."""
-        return [m[begin + a] for a in ti.static(range(SPACE))]
-
-    @ti.func
-    def felt(self, m: ti.template(), v: ti.template()):
-        """A vector v over the earth (a list) in the axes of a tank that moves so, Rᵀ v."""
-        return [
-            m[TURN + a] * v[0] + m[TURN + SPACE + a] * v[1] + m[TURN + 2 * SPACE + a] * v[2]
-            for a in ti.static(range(SPACE))
-        ]
-
-    @ti.func
     def frame(self, w, t):
         """The tank's frame for the cargo: (b, ω, ω̇) in its own axes, with the body force per mass b = Rᵀ(g − P̈)."""
         m = self.motion(w, t)
         force = [0.0 - m[GAIN], 0.0 - m[GAIN + UP] - self.gravity[0], 0.0 - m[GAIN + X]]
-        parts = self.felt(m, force), self.felt(m, self.part(m, RATE)), self.felt(m, self.part(m, RISE))
+        parts = seen(m, force), seen(m, part(m, RATE)), seen(m, part(m, RISE))
         return ti.Vector([ti.cast(parts[k // SPACE][k % SPACE], self.real) for k in ti.static(range(self.numbers))])
 
     @ti.func
@@ -130,7 +132,7 @@ class PrescribedInSpace(Driven):
         yaw = ti.atan2(m[TURN + SPACE * Y + X], m[TURN + SPACE * X + X])
         roll = ti.atan2(up[Y], up[Z])
         angles = [pitch, yaw, roll]
-        parts = self.part(m, PLACE), angles, self.part(m, VELOCITY), self.part(m, RATE)
+        parts = part(m, PLACE), angles, part(m, VELOCITY), part(m, RATE)
         return [parts[k // SPACE][k % SPACE] for k in ti.static(range(4 * SPACE))]
 
     @ti.func

@@ -76,10 +76,9 @@ class Lists:
         By Steiner's formula for what is within a distance of a convex body.
         """
         side, far = lanes ** (1.0 / axes) if lanes > 1 else 0.0, 2.0 * smoothing + SKIN[1]
-        if axes == PLANE:
-            return int(CROWDED * (side**2 + 4.0 * side * far + np.pi * far**2))
-        round_edges = 6.0 * side**2 * far + 3.0 * np.pi * side * far**2
-        return int(CROWDED * (side**3 + round_edges + 4.0 / 3.0 * np.pi * far**3))
+        of_plane = side**2 + 4.0 * side * far + np.pi * far**2
+        of_space = side**3 + 6.0 * side**2 * far + 3.0 * np.pi * side * far**2 + 4.0 / 3.0 * np.pi * far**3
+        return int(CROWDED * (of_plane if axes == PLANE else of_space))
 
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
@@ -240,8 +239,7 @@ class Lists:
     @ti.func
     def shift(self, image, axis: ti.template()):
         """By how much (m) an image of periodic space is displaced along an axis."""
-        step = image // ti.static(3**axis) % 3 - 1
-        return ti.cast(step, self.particles.where) * self.periods[axis]
+        return ti.cast(image // ti.static(3**axis) % 3 - 1, self.particles.where) * self.periods[axis]
 
     @ti.func
     def block_of(self, entry):

@@ -18,7 +18,7 @@ class Weighted:
     kinetic energy the other loses in elastic energy, pair by pair (own derivation). They are those of a linear Riemann
     problem with equal speeds of sound, without its dissipation (Rezavand, Zhang & Hu 2020). Water hardly sees how air
     moves, air sees water as a wall. At walls air meets its mirror image: there the pressure is 2 p_i + ρ_i g·(r_w −
-    r_i), the weight 2. By symmetry of both sides, and with `solvers.fluid.walls.slip_correction`, the volume of air
+    r_i), the weight 2. By symmetry of both sides, and with `solvers.fluid.phases.slip_correction`, the volume of air
     between walls and water then follows them, however coarse it is (own derivation). With a weight of 1 and an
     extrapolated pressure half a spacing of it is missed; a weight of 2 with such a pressure drives air at rest.
 

@@ -37,6 +37,18 @@ def lattice(polygon: np.ndarray, level: float, spacing: float) -> tuple[np.ndarr
     return points, area_below(polygon, level - polygon[:, 1].min()) / len(points)
 
 
+def lattice_in_space(polygon: np.ndarray, level: float, spacing: float, along: float) -> tuple[np.ndarray, float]:
+    """Places (n, 3) m of particles in a prism over a polygon, `along` (m) long, and the volume (m³) of each.
+
+    A lattice of the polygon, as of `lattice`, in equal slices along x.
+    """
+    section, area = lattice(polygon, level, spacing)
+    count = max(1, round(along / spacing))
+    x = along / count * (np.arange(count) + 0.5) - 0.5 * along
+    points = np.column_stack([np.tile(section, (count, 1)), np.repeat(x, len(section))])
+    return points, area * along / count
+
+
 def from_edges(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
     """Distances (n,) m of points (n, 2) from the nearest edge of a polygon (m, 2)."""
     nearest = np.full(len(points), np.inf)

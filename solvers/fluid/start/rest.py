@@ -6,7 +6,7 @@ import numpy as np
 
 from solvers.fluid.given import Water, particles
 from solvers.fluid.phases.reduced_pressure import ReducedPressure
-from solvers.fluid.start.lattice import lattice
+from solvers.fluid.start.lattice import lattice, lattice_in_space
 from solvers.fluid.start.packing import packed
 from solvers.fluid.start.plates import packed_beside
 from solvers.fluid.states.tait import GAMMA
@@ -49,10 +49,12 @@ def at_rest(
     gravity: float,
     parts: Sequence[Part] = (),
     outline: np.ndarray | None = None,
+    along: float | None = None,
 ) -> np.ndarray:
     """The particles (n,) of water at rest in a polygon up to a level (m).
 
-    Beside `parts` in a tank with this `outline` (m, 2) m they are packed, see `packed_beside`.
+    Beside `parts` in a tank with this `outline` (m, 2) m they are packed, see `packed_beside`. In space the polygon is
+    the section of a prism, `along` (m) long, and they are a lattice.
 
     Each has the volume that it takes, so that its mass ρ0 (1 + s) V is that of the compressed water: with equal masses
     the level would sink by g H²/(2 c0²). With ρ0 as of `uncompressed` level and mass are both those of incompressible
@@ -61,9 +63,11 @@ def at_rest(
     if parts:
         packing = packed_beside(polygon, level, water, parts, outline)
         points, volume = packing.points, packing.volume
+    elif along is not None:
+        points, volume = lattice_in_space(polygon, level, water.spacing, along)
     else:
         points, volume = STARTS[water.start](polygon, level, water)
-    found = particles(len(points))
+    found = particles(len(points), axes=points.shape[1])
     found["position"] = points
     weight = ReducedPressure.weight(water, gravity)
     found["deviation"] = hydrostatic_deviation(level - points[:, 1], weight, water.sound_speed, water.state)

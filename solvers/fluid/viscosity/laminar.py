@@ -2,6 +2,8 @@
 
 import taichi as ti
 
+from solvers.machine.quantity import PLANE
+
 
 class Laminar:
     """f = 2 ν ρ0 Σ V_j (u_j − u_i) (−W'/r) (Morris, Fox & Zhu 1997, eq. 22): laminar flow of constant viscosity ν.
@@ -16,7 +18,7 @@ class Laminar:
     central = False
 
     @staticmethod
-    def strength(water) -> float:
+    def strength(water, axes: int = PLANE) -> float:
         """Factor 2 ν ρ0 (Pa s) of the pairs' sum for a `solvers.fluid.given.Water`."""
         return 2.0 * water.kinematic * water.density
 

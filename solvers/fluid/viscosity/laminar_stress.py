@@ -1,10 +1,11 @@
 """Laminar viscosity by its whole stress, for liquids of unequal viscosity side by side."""
 
 from solvers.fluid.viscosity.artificial import Artificial
+from solvers.machine.quantity import PLANE
 
 
 class LaminarStress(Artificial):
-    """f = 2 (D + 2) ν ρ0 Σ V_j π ∇W, D = 2, π of `Artificial` (Monaghan 2005, eq. 8.8): laminar flow of two fluids.
+    """f = 2 (D + 2) ν ρ0 Σ V_j π ∇W, D axes, π of `Artificial` (Monaghan 2005, eq. 8.8): laminar flow of two fluids.
 
     Forces along the line between two particles have a symmetric stress, μ (∇u + ∇uᵀ) for a liquid that is not
     compressed, which at a surface between two liquids is what both must bear alike. Forces along the difference of
@@ -17,6 +18,6 @@ class LaminarStress(Artificial):
     """
 
     @staticmethod
-    def strength(water) -> float:
-        """Factor 8 ν ρ0 (Pa s) of the pairs' sum for a `solvers.fluid.given.Water`."""
-        return 8.0 * water.kinematic * water.density
+    def strength(water, axes: int = PLANE) -> float:
+        """Factor 2 (D + 2) ν ρ0 (Pa s) of the pairs' sum for a `solvers.fluid.given.Water`."""
+        return 2.0 * (axes + 2) * water.kinematic * water.density

@@ -11,6 +11,7 @@ from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.state import Particles
 from solvers.fluid.terms.term import Sums, Term
 from solvers.fluid.walls.wall_layers import WallLayers
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import State, padded
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot, named
@@ -52,9 +53,7 @@ class DivergenceCorrection:
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
         self.bodies, p = context.lists.bodies, context.particles
-        tank = np.zeros(((p.walls - self.bodies.rows) * p.lanes, 2))
-        tank[slots] = layers.sliding
-        along = np.concatenate([tank.reshape(-1, p.lanes, 2), self.bodies.solids.sliding])
+        along = layers.rows(layers.sliding, self.bodies.solids.sliding, slots, p.lanes)
         own = arrays.under("water.divergence")
         self.along = [
             own.holding(name, padded(along[..., a], max(p.wall_blocks, 1)), "row lane")
@@ -100,6 +99,8 @@ class DivergenceCorrection:
         if ti.static(self.bodies.moving):
             self.bodies.turn(b, along, AT_MIDDLE)
         slid = (few * dot(moved, along)) * dot(along, steep)
+        if ti.static(p.axes > PLANE):  # `along` is the normal n: what slides is square to it, where there is one
+            slid = (few * dot(moved, steep)) * dot(along, along) - slid
         if ti.static(len(self.bodies.visibility.plates) > 0):
             slid *= self.bodies.visibility.off_ends(b, AT_MIDDLE)
         closed = closed - slid

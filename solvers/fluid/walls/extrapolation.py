@@ -5,9 +5,9 @@ import taichi as ti
 from solvers.fluid.bodies.coupling import FreeBodyCoupling
 from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.phases.air_at_walls import AirAtWalls
+from solvers.fluid.phases.slip_correction import SlipCorrection
 from solvers.fluid.terms.term import Seen, Sums, Term, doing
 from solvers.fluid.walls.no_slip import MirroredVelocity
-from solvers.fluid.walls.slip_correction import SlipCorrection
 from solvers.fluid.walls.tangential_correction import Leaning, TangentialCorrection
 from solvers.machine.phase import Phase
 from solvers.machine.state import State

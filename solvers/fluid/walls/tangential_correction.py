@@ -11,6 +11,7 @@ from solvers.fluid.state import Particles
 from solvers.fluid.terms.term import Sums, Term
 from solvers.fluid.walls.layers import FAR, deep
 from solvers.fluid.walls.wall_layers import WallLayers
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State, padded
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
@@ -58,13 +59,16 @@ class TangentialCorrection:
     def __init__(
         self, arrays: State, context: FluidContext, layers: WallLayers, slots: np.ndarray, tanks: Sequence[Tank]
     ):
-        """`slots` are where the points of `layers` are among the lanes of the walls."""
+        """`slots` are where the points of `layers` are among the lanes of the walls.
+
+        What `layers` have for directions along faces are normals in space.
+        """
         self.particles, self.constants = p, c = context.particles, context.constants
         self.bodies, self.order = (bodies := context.lists.bodies), context.lists.order
         self.acts = p.wall_blocks > 0 and not (c.full or c.two)
         if self.acts:
             own, each = arrays.under("water.tangential"), (Axis("block", p.worlds * p.stride), Axis("lane", p.lanes))
-            rows = self._rows(layers.straight, bodies.solids.straight, slots)
+            rows = layers.rows(layers.straight, bodies.solids.straight, slots, p.lanes)
             self.along = [
                 own.holding(name, padded(rows[..., a], p.wall_blocks), "row lane")
                 for a, name in enumerate(named("along", p.axes))
@@ -75,7 +79,7 @@ class TangentialCorrection:
                 for number, tank in enumerate(tanks):
                     mine = layers.tanks == number
                     off[mine] = deep(layers.points[mine], layers.along[mine], tank.outline)
-                off = self._rows(off, bodies.solids.deep, slots)
+                off = layers.rows(off, bodies.solids.deep, slots, p.lanes)
                 self.deep = own.holding("deep", padded(off, p.wall_blocks), "row lane")
                 goes_on = (bodies.solids.prolongs | np.eye(bodies.count, dtype=bool)).astype(np.int32)
                 self.goes_on = own.holding("goes_on", goes_on, "part other", ti.i32)
@@ -84,13 +88,6 @@ class TangentialCorrection:
                 self.ends = np.cumsum([0, *(len(of_one) for of_one in sides)]).tolist()
                 self.sides = own.holding("sides", np.concatenate(sides), "side number", own.exact)
                 self.near = own.holding("near", np.array([FAR * bodies.reach]), "length", p.real)
-
-    def _rows(self, of_tank: np.ndarray, of_bodies: np.ndarray, slots: np.ndarray) -> np.ndarray:
-        """Values of the points of tanks, at their `slots`, and of those of bodies, by rows and lanes."""
-        lanes = self.particles.lanes
-        rows = np.zeros(((self.particles.walls - self.bodies.rows) * lanes, *of_tank.shape[1:]))
-        rows[slots] = of_tank
-        return np.concatenate([rows.reshape(-1, lanes, *of_tank.shape[1:]), of_bodies])
 
     @ti.func
     def note(self, b, seen, steep: ti.template()):
@@ -103,7 +100,10 @@ class TangentialCorrection:
         if ti.static(self.bodies.count > 0):
             leans *= self.clear(b, along)
         for a in ti.static(range(p.axes)):
-            p.store(self.correction[a], b, leans * along[a])
+            if ti.static(p.axes == PLANE):
+                p.store(self.correction[a], b, leans * along[a])
+            else:  # `along` is the normal n: steep − n (n·steep), where there is one
+                p.store(self.correction[a], b, dot(along, along) * steep[a] / ti.max(seen, 1e-30) - leans * along[a])
 
     @ti.func
     def clear(self, b, along: ti.template()):

@@ -8,9 +8,9 @@ from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.phases.wall_push import WallPushOfTwo
 from solvers.fluid.terms.balance import Balance
 from solvers.fluid.terms.term import Pair, Sums, Term
+from solvers.fluid.terms.wall_push import WallPush
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.no_slip import WallDrag
-from solvers.fluid.walls.wall_push import WallPush
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, swing, turns
 from solvers.space.tangent import moment

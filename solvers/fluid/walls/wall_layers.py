@@ -25,6 +25,7 @@ class WallLayers:
     """
 
     def __init__(self, water: Water, tanks: Sequence[Tank], fills: Sequence[int]):
+        self.blocks = 0  # how many the grid arranges them in
         self.probes: list[np.ndarray] = []
         self.open: list[np.ndarray] = []
         self.points, self.volumes, self.firm = np.zeros((0, 2)), np.zeros(0), np.zeros(0)
@@ -56,6 +57,13 @@ class WallLayers:
             self.firm, self.along = np.append(self.firm, none), np.concatenate([self.along, 0.0 * of_gauge])
             self.straight = np.concatenate([self.straight, 0.0 * of_gauge])
             self.sliding = np.concatenate([self.sliding, 0.0 * of_gauge])
+
+    def rows(self, values: np.ndarray, of_bodies: np.ndarray, slots: np.ndarray, lanes: int) -> np.ndarray:
+        """Values of the points, at their `slots` among lanes, and after them those of bodies, by rows and lanes."""
+        rows = np.zeros((self.blocks * lanes, *values.shape[1:]))
+        rows[slots] = values
+        rows = rows.reshape(-1, lanes, *values.shape[1:])
+        return np.concatenate([rows, of_bodies]) if len(of_bodies) else rows
 
     def _add(self, points: np.ndarray, volumes: np.ndarray, edges: np.ndarray, tank: int) -> None:
         self.points, self.volumes = np.concatenate([self.points, points]), np.append(self.volumes, volumes)

@@ -8,7 +8,7 @@ import pytest
 from lab.base.errors import LabError
 from lab.preset.find import load
 from solvers.fluid.given import particles
-from solvers.fluid.walls.end_walls import RATES, SHARES, EndWallFriction
+from solvers.fluid.terms.end_walls import RATES, SHARES, EndWallFriction
 from solvers.motion.harmonic import Roll, Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation

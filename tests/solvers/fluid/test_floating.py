@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.damping import rate_of
+from solvers.fluid.terms.damping import rate_of
 from solvers.fluid.given import DampingZone
 from solvers.motion.harmonic import Sway
 from solvers.ship.potential.memory import retardation
