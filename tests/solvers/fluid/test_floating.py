@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.terms.damping import rate_of
 from solvers.fluid.given import DampingZone
+from solvers.fluid.terms.damping import rate_of
 from solvers.motion.harmonic import Sway
 from solvers.ship.potential.memory import retardation
 from solvers.ship.potential.radiation import hydrodynamics

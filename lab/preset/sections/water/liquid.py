@@ -20,10 +20,10 @@ from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import DampingZone, Gauge, Water
 from lab.preset.sections.water.tanks import Pool, Tanked
 from solvers.fluid import given
-from solvers.fluid.terms.damping import rate_of
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.phases.reduced_pressure import ReducedPressure
+from solvers.fluid.terms.damping import rate_of
 from solvers.fluid.walls.layers import edge_of
 from solvers.ship.water import Water as Sea
 from solvers.tank.outline import moments
