@@ -3,7 +3,7 @@
 import taichi as ti
 
 STEPS = 5  # of Newton's method for an eigenvalue in space
-FAINT = 1e-30  # of a spread of eigenvalues: below, all are the same
+FAINT = 1e-12  # of squares of eigenvalues near 1: below, all are the same, in 32 bits, too
 
 
 @ti.func
@@ -12,7 +12,7 @@ def least_eigenvalue(m: ti.template()):
 
     With q = tr/3 and p² = tr (M − q)²/6 the eigenvalues are q + p x, where x³ − 3 x = det((M − q)/p) (Smith 1961,
     Commun. ACM 4, 168). The smallest has x from −2 to −1. From −2 on Newton's method comes nearer from below alone; its
-    error is at most 2^−STEPS p, where the two smallest are the same, and elsewhere far less.
+    error is at most 0.04 p, where the two smallest are the same, and elsewhere far less (own trial, STEPS 5).
     """
     if ti.static(len(m) == 3):
         middle, apart = 0.5 * (m[0] + m[2]), 0.5 * (m[0] - m[2])

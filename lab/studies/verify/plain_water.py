@@ -12,10 +12,10 @@ from solvers.fluid.walls.layers import layers
 from solvers.scene import Scene
 
 
-def kernel(distance: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Wendland's C2 kernel as printed, W(r), and W'(r)/r by its derivative, in the plane."""
+def kernel(distance: np.ndarray, length: float, axes: int = 2) -> tuple[np.ndarray, np.ndarray]:
+    """Wendland's C2 kernel as printed, W(r), and W'(r)/r by its derivative, in the plane or in space."""
     q = np.minimum(distance / length, 2.0)
-    factor = 7.0 / (4.0 * np.pi * length**2)
+    factor = 7.0 / (4.0 * np.pi * length**2) if axes == 2 else 21.0 / (16.0 * np.pi * length**3)
     value = factor * (1.0 - 0.5 * q) ** 4 * (2.0 * q + 1.0)
     slope = factor * (-2.0 * (1.0 - 0.5 * q) ** 3 * (2.0 * q + 1.0) + 2.0 * (1.0 - 0.5 * q) ** 4)
     return value, slope / (length * np.maximum(distance, 1e-12))
@@ -48,7 +48,7 @@ class PlainWater:
         """r_j − r_i, its square, W and ∇_i W for all pairs."""
         apart = others[None] - r[:, None]
         square = (apart**2).sum(axis=2)
-        value, slope = kernel(np.sqrt(square), self.water.length)
+        value, slope = kernel(np.sqrt(square), self.water.length, r.shape[1])
         return apart, square, value, -slope[..., None] * apart
 
     def wall_pressure(self, r: np.ndarray, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
@@ -105,12 +105,12 @@ class PlainWater:
     def void_indicator(
         self, r: np.ndarray, mass: np.ndarray, s: np.ndarray, plane: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """½ Σ V (−W'/r) r² + b |Σ V ∇W| over water and walls, b being `plane` (m), and its second part alone."""
+        """Σ V (−W'/r) r²/D + b |Σ V ∇W| over water and walls, b being `plane` (m), and its second part alone."""
         both, volume = np.concatenate([r, self.wall]), np.append(self.volume(mass, s), self.wall_volume)
         apart, _, _, gradient = self.between(r, both)
         trace = (apart * gradient).sum(axis=2) @ volume
         lacking = plane * np.linalg.norm(np.einsum("j,ija->ia", volume, gradient), axis=1)
-        return 0.5 * trace + lacking, lacking
+        return trace / r.shape[1] + lacking, lacking
 
     def keeping(self, fullness: np.ndarray, lacking: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Rate of s by which the density follows the room that is taken, in packed water away from the surface."""
@@ -138,7 +138,7 @@ class PlainWater:
         flow += ((self.speed - u[:, None]) * at_wall).sum(axis=2) @ self.wall_volume
         flow -= self.closing(r, u, s, mass, pressed)
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
-        eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
+        eta = -kernel(np.linalg.norm(apart, axis=2), water.length, r.shape[1])[1]
         return -(1.0 + s) * flow + water.delta * water.length * water.sound_speed * (more * eta) @ volume
 
 

@@ -46,8 +46,8 @@ class PrismLayers(WallLayers):
         size = np.linalg.norm(offset, axis=1)[:, None]
         self.along, section, reach = offset / size, self.points[:, :2], water.reach
         behind_end = np.abs(self.points[:, 2]) > half
-        clear = np.where(behind_end, distance(section, tank.outline), half - np.abs(self.points[:, 2])) > FAR * reach
-        clear |= solid.periodic
+        off_edge = np.where(behind_end, distance(section, tank.outline), half - np.abs(self.points[:, 2]))
+        clear = (np.hypot(off_edge, size[:, 0]) > FAR * reach) | solid.periodic
         self.straight = self.along * clear[:, None]
         self.straight[~behind_end] = straight(section, self.straight, tank.outline, reach)[~behind_end]
         self.sliding = straight(section, self.along, sharp(tank.outline), reach)

@@ -11,6 +11,7 @@ from solvers.fluid.terms.term import Pair, Sums, Term
 from solvers.fluid.terms.wall_push import WallPush
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.no_slip import WallDrag
+from solvers.machine.quantity import PLANE
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, swing, turns
 from solvers.space.tangent import moment
@@ -116,11 +117,13 @@ class WallForces:
         total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(p.axes + turns(p.axes) + 2))])
         turning = moment(block.own, wall)
         force = [ti.cast(wall[a].sum(), p.exact) for a in ti.static(range(p.axes))]
-        swung = moment([ti.cast(block.origin[a], p.exact) for a in ti.static(range(p.axes))], force)
+        origin = [ti.cast(block.origin[a], p.exact) for a in ti.static(range(p.axes))]
         for a in ti.static(range(p.axes)):
             total[a] = 0.0 - force[a]
         for k in ti.static(range(turns(p.axes))):
-            total[p.axes + k] = 0.0 - (ti.cast(turning[k].sum(), p.exact) + swung[k])
+            a, b = ti.static((k + 1) % 3 if p.axes > PLANE else 0, (k + 2) % 3 if p.axes > PLANE else 1)
+            swung = ti.cast(turning[k].sum(), p.exact) + origin[a] * force[b] - origin[b] * force[a]
+            total[p.axes + k] = 0.0 - swung
         return total
 
     @ti.func
