@@ -24,6 +24,7 @@ from solvers.fluid.start.plates import is_slanted
 from solvers.fluid.start.rest import at_rest, hydrostatic_deviation, uncompressed
 from solvers.fluid.start.support import depths
 from solvers.fluid.timestep import steps_of_water
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.mixture.given import Mixture
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
@@ -59,8 +60,9 @@ def fluid_of(preset: Preset) -> Fluid | None:
 
 def waiting_in(preset: Preset, pool: Pool) -> np.ndarray:
     """The particles (n,) that may enter a tank: so many as fill it, each a square, for now in its middle."""
-    found = particles_of_water(pool.places(preset.liquid.spacing))
-    found["volume"], found["position"] = preset.liquid.spacing**2, pool.polygon.mean(axis=0)
+    axes = SPACE if preset.tank.solid else PLANE
+    found = particles_of_water(pool.places(preset.liquid.spacing), axes=axes)
+    found["volume"], found["position"][:, :PLANE] = preset.liquid.spacing**axes, pool.polygon.mean(axis=0)
     return found
 
 
@@ -77,7 +79,8 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     borne = preset.water.radius is None and "z" not in water.periodic
     try:
         gravity = preset.run.gravity if borne else 0.0
-        drops = at_rest(pool.polygon, pool.level, water, gravity, beside, outline_at(preset, pool.number))
+        place = beside, outline_at(preset, pool.number), preset.tank.along
+        drops = at_rest(pool.polygon, pool.level, water, gravity, *place)
         if preset.water.flow:
             _set_going(preset, drops)
         elif preset.water.region is not None:
@@ -181,11 +184,11 @@ def most_drops(preset: Preset) -> int:
     size, count = preset.liquid.spacing, 0
     for pool in preset.pools:
         count += int(np.ceil(np.ptp(pool.polygon[:, 0]) / size + 1.0) * np.ceil(pool.most / size + 1.0))
-    return count
+    return count * int(np.ceil(preset.tank.along / size + 1.0)) if preset.tank.solid else count
 
 
 def volumes_of(scene: Scene) -> np.ndarray:
-    """Volumes (W, n) m² of the particles of water of a scene in the plane; n is 0 without water."""
+    """Volumes (W, n) m³, in the plane m², of the particles of water of a scene; n is 0 without water."""
     return scene.fluid.particles["volume"][:, : scene.fluid.wet] if scene.fluid else np.zeros((scene.worlds, 0))
 
 

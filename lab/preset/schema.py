@@ -133,8 +133,8 @@ class Preset(WithBodies):
 
     @property
     def faces(self) -> tuple[str, ...]:
-        """Names of the faces of the tank in space; none in the plane."""
-        return self.tank.solid.faces(np.array(self.tank.corners)) if self.tank.solid else ()
+        """Names of the faces of the tank in space whose loads are told; none in the plane, and of water alone."""
+        return self.tank.solid.faces(np.array(self.tank.corners)) if self.tank.solid and self.grains else ()
 
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:

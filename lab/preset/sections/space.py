@@ -12,7 +12,6 @@ from lab.preset.units import show
 from solvers.motion import IN_SPACE
 
 PLANE_ALONE = {
-    "water": "water is computed in the plane alone",
     "axle": "a tank on an axle is computed in the plane alone",
     "shapes": "irregular grains are computed in the plane alone",
 }
@@ -50,6 +49,8 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     for key, reason in PLANE_ALONE.items():
         if getattr(preset, key):
             yield key, f"{reason}; leave this out, or {key_of_space}"
+    if preset.water:
+        yield from _faults_of_water(preset, key_of_space)
     if preset.ship and tank.turned:
         yield "tank.turned", "a ship's hold is drawn out along her; give tank.along in its place"
     longest = tank.length or (preset.ship.length if preset.ship else None)
@@ -81,6 +82,21 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
     if tank.along and tank.along <= largest * (SHORTEST if tank.periodic else 1.0):
         least = f"{SHORTEST:g} of the largest grains, " if tank.periodic else "one grain, "
         yield "tank.along", f"must be more than {least}{show(largest, 'm')} each (got {show(tank.along, 'm')})"
+
+
+def _faults_of_water(preset, key_of_space: str) -> Iterator[tuple[str, str]]:
+    """The keys at fault where there is water in space, and why."""
+    water, tank = preset.water, preset.tank
+    if not tank.along or tank.turned:
+        yield "water", f"water in space fills a tank that is drawn out; give tank.along in place of {key_of_space}"
+    beside = {name: bool(getattr(preset, name)) for name in ("grains", "air", "ship", "parts", "damping", "inflow")}
+    for name in (name for name, there in beside.items() if there):
+        yield name, f"in space water is alone in its tank so far; leave this out, or {key_of_space}"
+    for name, gauge in preset.gauges.items():
+        yield f"gauges.{name}", f"in space no gauge of {gauge.kind} is read yet; leave this out, or {key_of_space}"
+    for name in ("region", "radius", "flow", "periodic", "between_walls"):
+        if getattr(water, name):
+            yield f"water.{name}", f"this is of the plane alone; leave this out, or {key_of_space}"
 
 
 def _in_space(motion: Motion) -> Iterator[str]:

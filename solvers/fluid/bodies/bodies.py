@@ -10,6 +10,7 @@ from solvers.fluid.given import Water
 from solvers.fluid.lists.order import Order
 from solvers.fluid.lists.work_ranges import WorkRanges
 from solvers.fluid.state import UNUSED, Particles
+from solvers.machine.quantity import freedoms
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.poses import AT_START, Poses
 from solvers.space.axes import dot
@@ -267,7 +268,8 @@ class Bodies:
         """The mean loads on the parts (W, parts, 3) since they were last taken, which begin anew; their `work` up to a
         `time` (s), and the water in the rooms of hulls then."""
         if not self.count:
-            return {"part_force": np.zeros((self.worlds, 0, 3)), "part_work": np.zeros((self.worlds, 0))}
+            none = np.zeros((self.worlds, 0, len(freedoms(self.particles.axes))))
+            return {"part_force": none, "part_work": none[..., 0]}
         impulse = np.stack([self._of_worlds(field) for field in self.impulse], axis=-1)
         elapsed = self.elapsed.to_numpy().reshape(self.worlds, -1)[:, 0]
         for field in (*self.impulse, self.elapsed):

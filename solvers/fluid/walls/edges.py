@@ -157,7 +157,7 @@ class Edges:
         """The mean forces (W, edges, 2) N since they were last taken; they begin anew from here."""
         worlds = self.particles.worlds
         if not self.wanted:
-            return {"edge_force": np.zeros((worlds, 0, 2))}
+            return {"edge_force": np.zeros((worlds, 0, self.particles.axes))}
         impulse = np.stack([field.to_numpy() for field in self.impulse], axis=-1)[:, self.wanted]
         elapsed = self.elapsed.to_numpy()
         self.forget()

@@ -30,6 +30,7 @@ from solvers.tank.outline import moments
 
 # Least α of water between grains: with 0.01 a soaked bed stirs itself, above 1e-6 m g d a grain, with 0.02 it rests
 STILL = 0.02
+IN_SPACE = 1.5  # h/Δx: 4/3 π (2 · 1.5)³ = 113 neighbours, where h = 2 Δx in the plane has 50
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
 
@@ -67,7 +68,7 @@ def liquid(preset: Wet) -> given.Water:
         spacing=spacing(preset),
         sound_speed=sound_speed(preset, scheme),
         density=water.density,
-        smoothing=water.smoothing or (preset.air and scheme.smoothing_with_air) or scheme.smoothing,
+        smoothing=smoothing(preset, scheme),
         kernel=water.kernel or scheme.kernel,
         state=water.state or scheme.state,
         diffusion=water.diffusion or scheme.diffusion,
@@ -81,12 +82,12 @@ def liquid(preset: Wet) -> given.Water:
         background=water.background_pressure or 0.0,
         shifting=water.shifting,
         speed=expected_speed(preset),
-        start=water.start,
+        start="lattice" if preset.tank.solid else water.start,
         model=water.model,
         swing_damping=water.swing_damping,
         added_mass=water.added_mass,
         walls=water.periodic != "yz",
-        periodic=tuple(water.periodic or ""),
+        periodic=(*(water.periodic or ""), *(["x"] if preset.tank.periodic else [])),
         pull=given.Pull(water.flow.pull, centre_of_flow(preset)) if water.flow and water.flow.pull else None,
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
@@ -99,6 +100,14 @@ def liquid(preset: Wet) -> given.Water:
         hanging = ReducedPressure.hanging(made, preset.run.gravity, over)
         made = replace(made, background=background(made.softened.air, made, hanging))
     return made
+
+
+def smoothing(preset: Wet, scheme: Scheme) -> float:
+    """h/Δx: as given, else that of the scheme; in space no more than IN_SPACE, with twice the plane's neighbours."""
+    if preset.water.smoothing:
+        return preset.water.smoothing
+    found = (preset.air and scheme.smoothing_with_air) or scheme.smoothing
+    return min(found, IN_SPACE) if preset.tank.solid else found
 
 
 def _zone(preset: Wet, zone: DampingZone) -> given.DampingZone:
