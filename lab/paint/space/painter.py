@@ -1,5 +1,6 @@
 """Paint spheres in a tank in space over a picture."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,11 +37,12 @@ def paint_space(
     walls: Walls,
     skin: Skin,
     layers: Layers | None = None,
+    over: Callable[[np.ndarray, Layers], None] | None = None,
 ) -> Layers:
     """Paint spheres (place (n, 3), radius (n,), m) and walls over a picture (h, w, 3), u8, in place.
 
     Spheres without a finite place are left out. Returns what is seen where, for what is drawn over it; layers: those
-    of an earlier picture of this size, whose memory is used again.
+    of an earlier picture of this size, whose memory is used again; over: what is painted over both, seen through.
     """
     layers = layers or Layers(*picture.shape[:2])
     layers.clear(camera)
@@ -53,6 +55,9 @@ def paint_space(
     tints = np.array(np.broadcast_to(np.asarray(skin.wall, dtype=float), (max(len(planes), 1), 3)))
     shade(layers, balls, _some(planes), paint, tints)
     compose(picture, layers, balls)
+    if over:  # edges behind it are seen through it
+        paint_lines_in_space(picture, layers, edge_lines(camera, walls, skin.half), skin.edge)
+        over(picture, layers)
     paint_panes(picture, layers, camera, walls, tints)
     paint_lines_in_space(picture, layers, edge_lines(camera, walls, skin.half), skin.edge)
     return layers

@@ -25,6 +25,7 @@ from lab.paint.space.raster.shade import Paints
 from lab.paint.space.stance import carried, lengths, rotation
 from lab.paint.space.viewpoint import Viewpoint
 from lab.paint.space.walls import Walls
+from lab.paint.space.water import SpaceWater
 
 EDGE = 0.065  # half thickness of edges in u
 GLOSS = 0.12  # of grains in the colours of a scale
@@ -81,7 +82,7 @@ class SpaceView:
 
     def style(self, grains: Colouring | None, water: object, hues: Sequence[tuple]) -> None:
         """Say what the colours show."""
-        self._colouring = grains
+        self._colouring, self._water = grains, SpaceWater(self.beds, water.colouring)
 
     def paint_backdrop(self, page: np.ndarray) -> None:
         """What does not move: nothing, since the camera may go round."""
@@ -130,7 +131,15 @@ class SpaceView:
         tints[len(space.walls.pane) :] = blend(theme.part, theme.hold, PALE)
         tints[walls.pane] = theme.part
         skin = Skin(tints, theme.wall, half)
-        paint_space(part, camera, place, radius, paints, walls, skin, layers)
+        drops = self._drops(bed, row)
+
+        def over(picture: np.ndarray, found: Layers) -> None:
+            self._water.paint(picture, found, camera, bed, drops)
+
+        if len(drops):
+            balls = self._water.balls(bed, row, drops)
+            place, radius, paints = balls if bed.empty else (place, radius, paints)
+        paint_space(part, camera, place, radius, paints, walls, skin, layers, over if len(drops) else None)
         if self.setting.overlay == "trails":
             self._paint_trails(part, layers, camera, k, frame)
 
@@ -162,6 +171,15 @@ class SpaceView:
             if axes is not None:
                 axes, mark = np.concatenate([axes, np.zeros((count, 3))]), np.concatenate([mark, np.zeros((count, 3))])
         return place, radius, Paints(colour, gloss, axes, mark)
+
+    def _drops(self, bed: Bed, row: float) -> np.ndarray:
+        """Places (n, 3) m of the water, NaN for what is cut away or far from the tank; none without water."""
+        if not bed.footage.water:
+            return np.zeros((0, 3))
+        place, reach = bed.drops("water_position", row), self._reach[self.beds.index(bed)]
+        off = (place < reach.min(axis=0)) | (place > reach.max(axis=0))
+        place = np.where(off.any(axis=1, keepdims=True), np.nan, place)
+        return place if self._viewpoint.section is None else self._viewpoint.section.shown(place)
 
     def _shown(self, bed: Bed, row: float) -> np.ndarray:
         """Places (n, 3) m of grains, NaN for those that are cut away or far from the tank."""

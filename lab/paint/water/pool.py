@@ -11,9 +11,9 @@ from solvers.fluid.given import Gauge, Level
 
 @dataclass(frozen=True)
 class Pool:
-    """volume (W, n): of the particles in the plane, m²; gauges of pressure and of depth, by name; air: as volume;
+    """volume (W, n): of the particles, m³, in the plane m²; gauges of pressure and of depth, by name; air: as volume;
     flows: whether it flows at first; porous: whether it is between grains; level: height (m) of its surface as it
-    starts, None where that follows from its amount; density (kg/m³); gravity (m/s²)."""
+    starts, None where that follows from its amount; density (kg/m³); gravity (m/s²); axes of the scene."""
 
     volume: np.ndarray
     gauges: dict[str, Gauge]
@@ -24,6 +24,7 @@ class Pool:
     level: float | None = None
     density: float = 1000.0
     gravity: float = 9.81
+    axes: int = 2
 
     @classmethod
     def of(cls, preset: Preset, volume: np.ndarray, air: np.ndarray) -> "Pool | None":
@@ -33,10 +34,10 @@ class Pool:
         water, (gauges, levels, _) = preset.liquid, parted(preset.gauges)
         of_gauges = dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True))
         level = float(preset.pools[0].level) if preset.water.depth is not None else None
-        weight = level, preset.water.density, preset.run.gravity
+        weight = level, preset.water.density, preset.run.gravity, preset.axes
         return cls(volume, *of_gauges, air, preset.water.flow is not None, preset.wet, *weight)
 
     @property
     def spacing(self) -> float:
         """Mean distance of the particles (m)."""
-        return float(np.sqrt(self.volume.mean()))
+        return float(self.volume.mean() ** (1.0 / self.axes))

@@ -9,12 +9,15 @@ from lab.paint.space.raster.layers import WALL, Layers, Numbers, Whole, ray_at, 
 from lab.paint.space.walls import Walls
 
 
-def find_walls(layers: Layers, camera: SpaceCamera, walls: Walls, panes: bool = False) -> np.ndarray:
+def find_walls(
+    layers: Layers, camera: SpaceCamera, walls: Walls, panes: bool = False, front: bool = False
+) -> np.ndarray:
     """Write into the layers where walls are seen; returns their planes (m, 4) in camera coordinates: n · r = d.
 
-    Their normals point towards the camera. panes: the panes alone, else all that are none.
+    Their normals point towards the camera. panes: the panes alone, else all that are none; front: those that are not
+    drawn, as one looks through them into the tank.
     """
-    drawn = np.flatnonzero(walls.facing(camera.gaze.eye) & (walls.pane == panes)).astype(np.int32)
+    drawn = np.flatnonzero((walls.facing(camera.gaze.eye) != front) & (walls.pane == panes)).astype(np.int32)
     planes = _planes(camera, walls)
     if len(drawn):
         corners = camera.pixels(walls.points)
