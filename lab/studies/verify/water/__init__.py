@@ -1,10 +1,10 @@
 """Water against closed forms: rest, waves, sloshing, viscous flow, free drops, and what must be kept."""
 
 from lab.studies.case import Case
-from lab.studies.verify.water import balance, bore, drops, orifice, patch, rest, sloshing, vortices, waves
+from lab.studies.verify.water import balance, bore, drops, orifice, patch, rest, sloshing, space, vortices, waves
 from lab.studies.verify.water.phases import air, bubbles
 
-MODULES = (rest, waves, bore, sloshing, orifice, vortices, drops, patch, balance, air, bubbles)
+MODULES = (rest, waves, bore, sloshing, orifice, vortices, drops, patch, balance, space, air, bubbles)
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 TEXTS = {
     rest.SECTION: """Forty layers rest only since wall particles compress the water that they take power from, see
