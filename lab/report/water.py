@@ -12,7 +12,7 @@ from lab.preset.accuracy import LEVELS
 from lab.preset.kept.content import parted
 from lab.preset.schema import Preset
 from lab.preset.sections.water.air import REAL_SOUND
-from lab.preset.sections.water.liquid import centre_of_flow, depth, expected_speed, layers
+from lab.preset.sections.water.liquid import centre_of_flow, depth, expected_speed, layers, usual_layers
 from lab.preset.units import show
 from lab.recording import Recording
 from lab.report.numbers import count_of
@@ -125,10 +125,13 @@ def accuracy(preset: Preset) -> Rows:
         return []
     own = "; the preset's own" if preset.water.spacing != "auto" else ""
     count = layers(preset)
+    found = f"{_error(count)}; of water that breaks only finer runs of the same tank tell"
+    if preset.tank.solid:
+        found = "in space not measured by layers; `cargolab verify water-space-wave` has a wave of 20 and of 40"
     return [
-        ("level", f"{preset.run.accuracy}: {LEVELS[preset.run.accuracy].layers} particles over the depth"),
+        ("level", f"{preset.run.accuracy}: {usual_layers(preset)} particles over the depth"),
         ("spacing", f"{count} particles over {show(depth(preset), 'm')}{own}"),
-        ("error", f"{_error(count)}; of water that breaks only finer runs of the same tank tell"),
+        ("error", found),
     ]
 
 

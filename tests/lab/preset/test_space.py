@@ -12,8 +12,9 @@ from lab.preset.recorded import to_table
 from lab.recording.layout import tables_of
 from lab.view.live import steerable
 
-WATER = {"grains": False, "material": False, "water": {"depth": "20 mm", "spacing": "5 mm"}}
+WATER = {"water": {"depth": "40 mm", "spacing": "20 mm"}}
 CHICKPEAS, DRUM, BARGE = "space/tilting-box-quick", "space/drum-quick", "space/barge-quick"
+SLOSHING = "space/sloshing-quick"
 LOPSIDED = {"tank.outline": [["-0.1 m", "0 m"], ["0.1 m", "0 m"], ["0.2 m", "0.1 m"]]}
 NARROW = {"tank.outline": [["-0.1 m", "0 m"], ["0.1 m", "0 m"], ["0.1 m", "0.01 m"], ["-0.1 m", "0.01 m"]]}
 BIG = {"kinds.big.diameter": "300 mm", "kinds.big.share": 0.5, "grains.table": False, "grains.diameter": "12 mm"}
@@ -26,7 +27,11 @@ AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
 @pytest.mark.parametrize(
     ("preset", "changes", "said"),
     [
-        (CHICKPEAS, WATER, "water: water is computed in the plane alone; leave this out, or tank.along"),
+        (CHICKPEAS, WATER, "grains: in space water is alone in its tank so far; leave this out, or tank.along"),
+        (SLOSHING, {"air.density": "1.2 kg/m^3"}, "air: in space water is alone in its tank so far"),
+        (SLOSHING, {"gauges.P1.place": ["0 mm", "0 mm"]}, "gauges.P1: in space no gauge of pressure is read yet"),
+        (SLOSHING, {"water.between_walls": True}, "water.between_walls: this is of the plane alone"),
+        (SLOSHING, {"tank.along": False, "tank.turned": True}, "water: water in space fills a tank that is drawn out"),
         (CHICKPEAS, {"tank.roughness": "5 mm"}, "tank.roughness: this is of the plane alone"),
         (CHICKPEAS, {"tank.thickness": "5 mm"}, "tank.thickness: this is of the plane alone"),
         (CHICKPEAS, {"grains.surface": "undisturbed"}, "grains.surface: a bed is levelled in the plane alone"),

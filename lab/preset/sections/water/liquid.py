@@ -25,6 +25,7 @@ from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.terms.damping import rate_of
 from solvers.fluid.walls.layers import edge_of
+from solvers.motion.frame import is_turn
 from solvers.ship.water import Water as Sea
 from solvers.tank.outline import moments
 
@@ -159,7 +160,13 @@ def depth(preset: Wet) -> float:
 def layers(preset: Wet) -> int:
     """How many particles make up the depth."""
     wanted, deep = preset.water.spacing, depth(preset)
-    return LEVELS[preset.run.accuracy].layers if wanted == "auto" else max(1, round(deep / wanted))
+    return usual_layers(preset) if wanted == "auto" else max(1, round(deep / wanted))
+
+
+def usual_layers(preset: Wet) -> int:
+    """How many particles make up the depth by the level of accuracy: in space half as many as in the plane."""
+    found = LEVELS[preset.run.accuracy].layers
+    return found // 2 if preset.tank.solid else found
 
 
 def spacing(preset: Wet) -> float:
@@ -204,11 +211,15 @@ def flow_speed(preset: Wet) -> float:
 
 def tank_speed(preset: Wet) -> float:
     """Bound (m/s) on the speed of any point of the tank by its motions, each alone."""
-    corners, fastest = np.array(preset.tank.corners), 0.0
+    corners, fastest, solid = np.array(preset.tank.corners), 0.0, preset.tank.solid
+    half = solid.half(corners) if solid else 0.0
     for motion in preset.motion.parts.values():
         lever = 1.0
         if motion.coordinate == "turn":
             lever = float(np.linalg.norm(corners - np.asarray(motion.centre), axis=1).max())
+        elif is_turn(motion.coordinate):  # about y or z, through a point of z and x, or of y and x
+            across = np.abs(corners[:, 1 if motion.coordinate == "pitch" else 0] - motion.centre[0]).max()
+            lever = float(np.hypot(across, half + abs(motion.centre[1])))
         fastest = max(fastest, lever * motion.fastest(preset.motion.soft_start))
     return fastest
 
