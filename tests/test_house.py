@@ -5,7 +5,9 @@
 
 import ast
 import re
+import tomllib
 from collections.abc import Iterator
+from fnmatch import fnmatch
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -34,10 +36,23 @@ FLOORS = {  # from the ground up: a room imports those before it
         *("runs", "sweeps", "view", "studies", "cli"),
     ),
     "cargolab": ("_hidden", "_calls"),
+    "benchmarks": (
+        *("aside", "devices", "remembered", "bench", "peers", "speed", "accuracy", "stability", "water"),
+        *("outlines", "gpu"),
+    ),
 }
-FACES = "solvers", "lab", "lab.__main__", "cargolab", "cargolab.__main__"  # they hand on what the rooms offer
+FACES = (
+    "solvers",
+    "lab",
+    "lab.__main__",
+    "cargolab",
+    "cargolab.__main__",
+    "benchmarks",
+)  # they hand on what the rooms offer
 FOR_ALL = "solvers", "lab.__version__"  # what every room may ask a face for: that Taichi is set up, the version
 ASKED = "lab.sweeps.cluster imports lab"  # by a function that travels to a worker, for the version of the lab there
+
+ASKS_FOR_BENCHMARKS = "lab.cli.benches"  # by their names, when it runs: an installed lab has none
 
 MOST_FILES = 14  # in a folder, its __init__.py aside
 REGISTRIES = "lab/measures", "solvers/grains/laws", "solvers/motion"  # as many as there are measures, laws, motions
@@ -108,6 +123,28 @@ def uphill() -> list[str]:
 
 def test_rooms_import_only_those_below_them():
     assert uphill() == []
+
+
+def test_only_one_command_asks_for_the_benchmarks_and_they_ask_for_nothing_of_users():
+    """No import leads to them, and they are in no wheel; what names them in a text is one file of the command."""
+    others = {name: path for name, path in modules().items() if not name.startswith("benchmarks")}
+    naming = [name for name, path in others.items() if "benchmarks." in "".join(texts(path))]
+    assert naming == [ASKS_FOR_BENCHMARKS]
+    theirs = {one for name in modules().keys() - others.keys() for one in imported(name)}
+    assert {one.split(".")[0] for one in theirs} == {"benchmarks", "lab", "solvers"}
+    wheel = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"]
+    assert not any(fnmatch("benchmarks", one) for one in wheel["find"]["include"])
+
+
+def texts(path: Path) -> list[str]:
+    """The texts in a file's code, its docstrings aside."""
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    said = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    return [
+        node.value
+        for node in nodes
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in said
+    ]
 
 
 def test_no_files_import_each_other_in_a_circle():

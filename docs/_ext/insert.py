@@ -19,8 +19,8 @@ from formula import mathml
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
+from benchmarks.speed.processors import overview
 from lab.preset.reference import reference
-from lab.studies.bench.speed.processors import overview
 
 ROOT = Path(__file__).parents[2]
 ASKED = re.compile(r"^\{\{ (\w+)((?: [^ }]+)*) \}\}$", re.MULTILINE)

@@ -1,9 +1,10 @@
-"""Where data lie: the shipped presets, and measured series, which are not shipped but in a folder of the user's."""
+"""Where data lie: shipped presets, benchmarks of the source, and measured series, which are in a user's folder."""
 
 import os
 from pathlib import Path
 
 PRESETS = Path(__file__).parents[2] / "presets"  # beside the lab; not found by its name, which a user's folder may have
+BENCHMARKS = PRESETS.with_name("benchmarks")  # in the source alone
 FOLDER = "CARGOLAB_DATA"  # the environment variable that names the folder of measured series
 PREFIX = f"${FOLDER}/"  # begins the name of a file in that folder
 

@@ -1,11 +1,30 @@
-"""The commands of `cargolab bench`: cost and accuracy of the lab's results, one page each."""
+"""The commands of `cargolab bench`: cost and accuracy of the lab's results, one page each.
+
+What they call is in the package `benchmarks` beside the lab's, which an installed lab has not.
+"""
 
 import sys
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import click
 
+from lab.base.data import BENCHMARKS
+from lab.base.errors import LabError
 from lab.cli.options import fast_option, page_only_option, page_option
+
+
+def _of(name: str) -> ModuleType:
+    """A module of the benchmarks. Raises LabError where they are not beside the lab."""
+    if not (BENCHMARKS / "bench.py").exists():
+        raise LabError(
+            "the benchmarks come with the lab's source and not with its package: clone the source, call "
+            f"`make demo` in it, then `.venv/bin/cargolab bench {name}`."
+        )
+    if (home := str(BENCHMARKS.parent)) not in sys.path:  # also of the processes that are started from here
+        sys.path.insert(0, home)
+    return import_module(f"benchmarks.{name}")
 
 
 @click.group()
@@ -13,7 +32,7 @@ def bench() -> None:
     """Measure cost and accuracy of the lab's results; each command writes a page with tables and figures.
 
     What is measured is kept beside the page with version, date and processor, and only done again where it is named or
-    the code has changed.
+    the code has changed. They are in the lab's source, not in its package.
     """
 
 
@@ -29,9 +48,7 @@ def accuracy(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -
     cargolab bench accuracy                an hour or two on two cores; run again, it continues
     cargolab bench accuracy stiffness rate
     """
-    from lab.studies.bench.accuracy import BENCH
-
-    click.echo(BENCH.run(studies, out, fast, page_only))
+    click.echo(_of("accuracy").BENCH.run(studies, out, fast, page_only))
 
 
 @bench.command()
@@ -46,9 +63,7 @@ def stability(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) ->
     cargolab bench stability
     cargolab bench stability map-verlet
     """
-    from lab.studies.bench.stability import SUITE
-
-    if not SUITE.run(cases, out, fast, page_only):
+    if not _of("stability").SUITE.run(cases, out, fast, page_only):
         sys.exit(1)
 
 
@@ -64,9 +79,7 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> N
     cargolab bench speed
     cargolab bench speed peers          compared with LIGGGHTS and LAMMPS, where they are installed
     """
-    from lab.studies.bench.speed import run_page
-
-    click.echo(run_page(studies, out, fast, page_only))
+    click.echo(_of("speed").run_page(studies, out, fast, page_only))
 
 
 @bench.command()
@@ -81,9 +94,7 @@ def water(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> N
     cargolab bench water
     cargolab bench water accuracy
     """
-    from lab.studies.bench.water import BENCH
-
-    click.echo(BENCH.run(studies, out, fast, page_only))
+    click.echo(_of("water").BENCH.run(studies, out, fast, page_only))
 
 
 @bench.command()
@@ -92,9 +103,7 @@ def water(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> N
 @page_only_option
 def outlines(out: Path, fast: bool, page_only: bool) -> None:
     """Contact rules of irregular grains: energy error by rule and number of nodes, and cost of a step."""
-    from lab.studies.bench.outlines import BENCH
-
-    click.echo(BENCH.run((), out, fast, page_only))
+    click.echo(_of("outlines").BENCH.run((), out, fast, page_only))
 
 
 @bench.command()
@@ -109,6 +118,4 @@ def gpu(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> Non
     cargolab bench gpu
     cargolab bench gpu cuda-water
     """
-    from lab.studies.bench.gpu import BENCH
-
-    click.echo(BENCH.run(studies, out, fast, page_only))
+    click.echo(_of("gpu").BENCH.run(studies, out, fast, page_only))

@@ -1,22 +1,17 @@
 """What reproduce, verify and bench share: names that are beginnings, results that are kept, pages made from them."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import asdict
 from functools import cache
 from hashlib import blake2b
 from importlib.resources import files
 from pathlib import Path
 
-import matplotlib
-
-from lab.base.data import PRESETS
+from lab.base.data import BENCHMARKS, PRESETS
 from lab.base.errors import LabError
 from lab.report.kept import Made, plain, read, write
-from lab.report.page import Page, render
-from lab.report.plots import STYLE
+from lab.report.page import render
 from lab.sweeps.cluster import sources
-
-Study = Callable[[Page, Path, bool], None]  # adds a section to a page; with a folder to work in, and whether in haste
 
 
 def choose(names: Collection[str], known: Iterable[str], what: str, usual: Collection[str] | None = None) -> list[str]:
@@ -37,8 +32,10 @@ def choose(names: Collection[str], known: Iterable[str], what: str, usual: Colle
 
 @cache
 def code() -> str:
-    """A hash of what makes results: the source of lab and solvers, their data, and the presets."""
+    """A hash of what makes results: the source of lab, solvers and benchmarks, their data, and the presets."""
     digest = blake2b(sources().encode(), digest_size=16)
+    for path in sorted(BENCHMARKS.rglob("*.py")):
+        digest.update(path.relative_to(BENCHMARKS).as_posix().encode() + b"\0" + path.read_bytes())
     for home in (Path(str(files("lab"))), Path(str(files("solvers"))), PRESETS):
         for path in sorted(home.rglob("*.toml")):
             digest.update(path.read_bytes())
@@ -96,39 +93,6 @@ class Kept:
 
 def _said(made: Made) -> str:
     return f"Made by `{made.command}`: {made.words}."
-
-
-@dataclass(frozen=True)
-class Bench:
-    """A bench whose studies each add a section to one page; `about` stands above them.
-
-    Its results are kept in NAME.json, by study; NAME.md is made from them, with figures NAME-FIGURE.png beside it.
-    """
-
-    name: str
-    title: str
-    studies: Mapping[str, Study]
-    about: str = ""
-
-    def run(self, names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> Path:
-        """Do the studies that begin like one of `names`, or without names all that are not kept; returns the page.
-
-        The page is written after each. What a study needs again is in the folder NAME. `page_only`: nothing is done
-        but the page. Raises LabError.
-        """
-        out, chosen = Path(out), choose(names, self.studies, "study")
-        kept = Kept(out / f"{self.name}.json", f"bench {self.name}", {"fast": fast})
-        page = self._write(kept)
-        with matplotlib.rc_context(STYLE):
-            for name in kept.missing([] if page_only else chosen, anew=bool(names)):
-                section = Page(out, self.name)
-                self.studies[name](section, out / self.name, fast)
-                kept.keep(name, {"blocks": section.blocks})
-                page = self._write(kept)
-        return page
-
-    def _write(self, kept: Kept) -> Path:
-        return write_sections(kept.path.with_suffix(".md"), self.title, kept.shown(self.studies), self.about)
 
 
 def write_sections(path: Path, title: str, results: Mapping[str, Mapping], about: str = "") -> Path:

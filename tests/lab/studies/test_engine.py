@@ -4,11 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from lab.base.errors import LabError
 from lab.report.kept import Made, plain, processor
-from lab.studies.engine import Bench, Kept, choose
+from lab.studies.engine import Kept, choose
 
 
 def test_names_are_beginnings_and_without_names_the_usual_ones_are_taken():
@@ -54,59 +53,6 @@ def test_a_result_of_other_code_or_another_processor_is_made_again_and_shown_unt
     kept = Kept(path, "bench trial", {"fast": True})
     assert "one" not in kept
     assert kept.shown(["one", "two"])["one"]["value"] == 2.0
-
-
-def trial(done: list[str]) -> Bench:
-    """A bench of two studies that note that they were done."""
-
-    def study(name):
-        def add(page, work, fast):
-            done.append(name)
-            page.section(name)
-            page.table(["number"], [[np.float64(1.23456)], [float("nan")]])
-            page.figure(name, Figure(), f"Drawn by {name}")
-
-        return add
-
-    return Bench("trial", "A trial", {"one": study("one"), "two": study("two")}, "What it is about.")
-
-
-def test_studies_are_kept_and_done_again_where_they_are_named(tmp_path, capsys):
-    done = []
-    bench = trial(done)
-    page = bench.run((), tmp_path, fast=True)
-    first = page.read_text()
-    assert done == ["one", "two"] and "## one" in first and "## two" in first and "What it is about." in first
-    assert bench.run((), tmp_path, fast=True).read_text() == first
-    assert done == ["one", "two"]
-    assert "one: kept from an earlier run" in capsys.readouterr().out
-    bench.run(["two"], tmp_path, fast=True)
-    assert done == ["one", "two", "two"] and page.read_text() == first, "the other study stays on the page"
-    bench.run((), tmp_path, fast=False)
-    assert done[3:] == ["one", "two"], "a full study is not a hasty one"
-
-
-def test_a_page_is_made_again_from_what_is_kept_alone(tmp_path):
-    """Also by other code, and where nothing is kept of a study, without it."""
-    done = []
-    page = trial(done).run(["one"], tmp_path, fast=True)
-    text = page.read_text()
-    page.unlink()
-    trial(done).run((), tmp_path, fast=True, page_only=True)
-    assert page.read_text() == text and done == ["one"]
-
-
-def test_a_study_that_breaks_off_leaves_those_before_it(tmp_path):
-    def broken(page, work, fast):
-        raise LabError("it broke off.")
-
-    done = []
-    studies = dict(trial(done).studies) | {"two": broken}
-    with pytest.raises(LabError):
-        Bench("trial", "A trial", studies).run((), tmp_path, fast=True)
-    assert "## one" in (tmp_path / "trial.md").read_text()
-    trial(done).run((), tmp_path, fast=True)
-    assert done == ["one", "two"]
 
 
 @pytest.mark.parametrize("text", ["[1, 2", "[1, 2]", '{"one": 2}'])

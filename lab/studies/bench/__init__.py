@@ -1,1 +1,0 @@
-"""Benchmarks: accuracy, speed, stability, graphics processors, outlines, and comparisons with peer codes."""
