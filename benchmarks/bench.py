@@ -17,13 +17,15 @@ Study = Callable[[Page, Path, bool], None]  # adds a section to a page; with a f
 class Bench:
     """A bench whose studies each add a section to one page; `about` stands above them.
 
-    Its results are kept in NAME.json, by study; NAME.md is made from them, with figures NAME-FIGURE.png beside it.
+    Its results are kept in NAME.json, by study; NAME.md is made from them, with figures NAME-FIGURE.png beside it, of
+    which the page shows that named `shown`.
     """
 
     name: str
     title: str
     studies: Mapping[str, Study]
     about: str = ""
+    shown: str = ""
 
     def run(self, names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> Path:
         """Do the studies that begin like one of `names`, or without names all that are not kept; returns the page.
@@ -43,4 +45,10 @@ class Bench:
         return page
 
     def _write(self, kept: Kept) -> Path:
-        return write_sections(kept.path.with_suffix(".md"), self.title, kept.shown(self.studies), self.about)
+        return write_sections(
+            kept.path.with_suffix(".md"),
+            self.title,
+            kept.shown(self.studies),
+            self.about,
+            f"{self.name}-{self.shown}.png",
+        )

@@ -5,6 +5,7 @@
 
 import ast
 import re
+import subprocess
 import tomllib
 from collections.abc import Iterator
 from fnmatch import fnmatch
@@ -58,6 +59,8 @@ MOST_FILES = 14  # in a folder, its __init__.py aside
 REGISTRIES = "lab/measures", "solvers/grains/laws", "solvers/motion"  # as many as there are measures, laws, motions
 
 PYTHONS = "len", "enumerate", "zip", "sum", "sorted", "reversed", "round", "isinstance", "map"
+
+MOST_BYTES = 4_000_000  # of what `renders/` keeps
 
 MOST_LINES = 300  # of a file
 LONG = {  # too long, and not to become longer
@@ -137,8 +140,9 @@ def test_only_one_command_asks_for_the_benchmarks_and_they_ask_for_nothing_of_us
 
 
 def texts(path: Path) -> list[str]:
-    """The texts in a file's code, its docstrings aside."""
-    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    """The texts in the code of a file that says something of benchmarks, its docstrings aside."""
+    text = path.read_text(encoding="utf-8")
+    nodes = list(ast.walk(ast.parse(text if "benchmarks." in text else "")))
     said = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
     return [
         node.value
@@ -176,6 +180,33 @@ def test_the_page_for_developers_names_every_room():
     text = (ROOT / "docs" / "developing.md").read_text(encoding="utf-8")
     tables = re.findall(r"^\| `(\w+)/` \| is \|\n(.+?)\n\n", text, re.MULTILINE | re.DOTALL)
     assert {package: tuple(re.findall(r"^\| `(\w+)` \|", rows, re.MULTILINE)) for package, rows in tables} == FLOORS
+
+
+def kept_pictures() -> dict[str, int]:
+    """The files of `renders/` that git keeps, with their bytes."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("no clone: what is kept of pictures is not known")
+    said = subprocess.run(["git", "ls-files", "-z", "renders"], cwd=ROOT, capture_output=True, text=True, check=True)
+    files = [name for name in said.stdout.split("\0") if name and (ROOT / name).exists()]
+    return {name: (ROOT / name).stat().st_size for name in files}
+
+
+def test_kept_pictures_and_pages_stay_small():
+    """A clone is mostly code: the gallery has heroes, a card a preset, and a figure a page of results."""
+    kept = kept_pictures()
+    assert kept and sum(kept.values()) <= MOST_BYTES, sorted(kept.items(), key=lambda one: -one[1])[:10]
+
+
+def test_a_page_of_results_shows_what_is_kept_and_nothing_else_is():
+    kept = kept_pictures()
+    pages = [name for name in kept if name.endswith(".md")]
+    shown = {
+        (Path(name).parent / picture).as_posix()
+        for name in pages
+        for picture in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", (ROOT / name).read_text(encoding="utf-8"))
+    }
+    folders = {Path(name).parent for name in pages}
+    assert pages and shown == {name for name in kept if name.endswith(".png") and Path(name).parent in folders}
 
 
 def of_taichi(function: ast.FunctionDef) -> bool:

@@ -35,4 +35,4 @@ STUDIES = {
     "levels": levels.study,
     "defaults": levels.study_defaults,
 }
-BENCH = Bench("accuracy", "Speed against error", STUDIES)
+BENCH = Bench("accuracy", "Speed against error", STUDIES, shown="collisions")

@@ -27,7 +27,7 @@ STUDIES = {
 ABOUT = """All times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and of
 the ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for a million
 grain-steps a second."""
-BENCH = Bench("speed", "Speed", STUDIES, ABOUT)
+BENCH = Bench("speed", "Speed", STUDIES, ABOUT, "grains")
 
 
 def run_page(names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> Path:

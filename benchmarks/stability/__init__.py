@@ -23,4 +23,4 @@ CASES = tuple(
     )
     for one in IN_SPACE
 )
-SUITE = Suite("bench stability", "Stability", CASES, "", {LIMITS: limit_case.SAYS})
+SUITE = Suite("bench stability", "Stability", CASES, "", {LIMITS: limit_case.SAYS}, shown="limits-verlet")

@@ -23,4 +23,4 @@ shared the machine: on one core the time is the process's own. Section Speed has
 done first with the same tank, spacing, smoothing length and physical time is what the second tells, times as fast in
 simulated seconds: take that one. The first is of particle-steps: how much faster one step is. Codes whose steps are
 longer gain nothing by it, so it compares programs and not answers."""
-BENCH = Bench("water", "Water beside other codes", STUDIES, ABOUT)
+BENCH = Bench("water", "Water beside other codes", STUDIES, ABOUT, "front")

@@ -77,10 +77,11 @@ def read(path: Path) -> dict[str, dict]:
 
 
 def write(path: Path, results: Mapping[str, object]) -> None:
-    """Write results, atomically; a number that JSON lacks becomes null."""
+    """Write results, atomically, a line each; a number that JSON lacks becomes null."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(plain(results), indent=1, ensure_ascii=False, allow_nan=False)
-    write_text(path, text + "\n")
+    style = {"ensure_ascii": False, "allow_nan": False, "separators": (",", ":")}
+    rows = [f"{json.dumps(name, **style)}:{json.dumps(one, **style)}" for name, one in plain(results).items()]
+    write_text(path, "{" + ",".join(f"\n{row}" for row in rows) + "\n}\n")
 
 
 def plain(value: object) -> object:

@@ -10,7 +10,7 @@ from pathlib import Path
 from lab.base.data import BENCHMARKS, PRESETS
 from lab.base.errors import LabError
 from lab.report.kept import Made, plain, read, write
-from lab.report.page import render
+from lab.report.page import on_page, render
 from lab.sweeps.cluster import sources
 
 
@@ -95,6 +95,8 @@ def _said(made: Made) -> str:
     return f"Made by `{made.command}`: {made.words}."
 
 
-def write_sections(path: Path, title: str, results: Mapping[str, Mapping], about: str = "") -> Path:
-    """Write a page from the `blocks` of results; returns its file."""
-    return render(path, "page.md.j2", title=title, about=about, results=list(results.values()))
+def write_sections(path: Path, title: str, results: Mapping[str, Mapping], about: str = "", shown: str = "") -> Path:
+    """Write a page from the `blocks` of results; `shown` is the file of the figure on it. Returns the page."""
+    files = [block["file"] for one in results.values() for block in one["blocks"] if "file" in block]
+    told = {"title": title, "about": about, "name": path.stem, **on_page(files, shown)}
+    return render(path, "page.md.j2", **told, results=list(results.values()))

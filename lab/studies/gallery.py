@@ -27,12 +27,12 @@ from lab.report.summary import TELLING
 from lab.studies.reproduce.cached import asked
 from lab.studies.reproduce.runs import Batch, carry_out
 
-WIDTH, HEIGHT = 640, 360  # pixels
+WIDTH, HEIGHT = 640, 360  # pixels of a clip
+CARD, WIDE, QUALITY = (400, 225), (1000, 1000), 65  # pixels of a card and of a wide one; what WebP calls quality
 LONGEST = 8.0  # s of a clip
 UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
-COLOURS_LEFT = 256  # in a poster
-CARGOES = "cargoes.png"
+CARGOES = "cargoes.webp"
 TOLD = {"status": str, "numbers": dict, "accuracy": str, "beds": int, "version": str, "date": str}
 
 
@@ -79,20 +79,21 @@ def _show(name: str, out: Path, beds: int, progress: Progress) -> None:
     with open_recording(folder) as recording:
         lasts, speed = float(recording.series["time"][-1]), recording.preset.video.speed
         made = _made(recording)
-    card = poster(folder, out / f"{_plain(name)}.png", time=telling_time(folder), width=WIDTH, height=HEIGHT)
-    lighten(card)
+    painted = poster(folder, time=telling_time(folder), width=WIDTH, height=HEIGHT)
+    lighten(painted, out / f"{_plain(name)}.webp", CARD)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     told = json.dumps({**_telling(summary), **made, "asked": wanted}, indent=1)
     write_text(path, told + "\n")
     render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, ceil(10.0 * lasts / LONGEST) / 10.0))
 
 
-def lighten(picture: Path) -> None:
-    """Leave 256 colours in a PNG file: half of the bytes."""
+def lighten(picture: Path, out: Path, size: tuple[int, int]) -> None:
+    """Keep a PNG file as WebP of at most this size (pixels): a tenth of the bytes."""
     with Image.open(picture) as image:
-        lean = image.convert("RGB").quantize(COLOURS_LEFT)
-    with replacing(picture) as part:
-        lean.save(part, optimize=True)
+        lean = image.convert("RGB")
+    lean.thumbnail(size, Image.Resampling.LANCZOS)
+    with replacing(out) as part:
+        lean.save(part, "WEBP", quality=QUALITY, method=6)
 
 
 def repeats_of_twin(name: str) -> int:
@@ -114,7 +115,8 @@ def _show_cargoes(out: Path) -> None:
     beds = {name: out / "runs" / "shapes" / name for name in COLOURS}
     run = {name: folder for name, folder in beds.items() if (folder / "recording.h5").exists()}
     if run:
-        paint_cargoes(run, out / CARGOES)
+        painted = paint_cargoes(run, out / "runs" / "cargoes.png")
+        lighten(painted, out / CARGOES, WIDE)
 
 
 def _cheapest(name: str, every: Mapping[str, str]) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 
 from lab.assembly.ship import MEMORY_ORDER
 from lab.base.errors import LabError
-from lab.base.files import replacing, write_text
+from lab.base.files import write_text
 from lab.naval.linear_water import by, linear_motion, peaks, table_in_calm
 from lab.naval.tables import write
 from lab.preset.find import LoadedPreset
@@ -117,6 +117,7 @@ def _responses(omega: np.ndarray, moves: Mapping[str, np.ndarray]):
 
 def _draw(folder: Path, name: str, preset: Preset, tables: Mapping[str, Hydrodynamics], response) -> None:
     """coefficients.png and response.png."""
+    from lab.report.page import save_figure
     from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION, canvas, matplotlib
 
     look = {"section": (BLUE, "-"), "strips": (GREY, ":"), "hull": (VERMILION, "-")}
@@ -139,8 +140,7 @@ def _draw(folder: Path, name: str, preset: Preset, tables: Mapping[str, Hydrodyn
             axes.set_xlabel("frequency (rad/s)")
         figure.suptitle(f"{name}: for each metre of her length, beam waves", x=0.01, ha="left")
         figure.legend(loc=BELOW, ncols=3)
-        with replacing(folder / "coefficients.png") as part:
-            figure.savefig(part)
+        save_figure(folder / "coefficients.png", figure)
         figure, (left, right) = canvas(LOW, 1, 2)
         omega, moves = response
         for kind, one in moves.items():
@@ -155,5 +155,4 @@ def _draw(folder: Path, name: str, preset: Preset, tables: Mapping[str, Hydrodyn
         right.set_ylabel("retardation function of roll (N)")
         figure.suptitle(f"{name}: by linear theory", x=0.01, ha="left")
         figure.legend(loc=BELOW, ncols=3)
-        with replacing(folder / "response.png") as part:
-            figure.savefig(part)
+        save_figure(folder / "response.png", figure)

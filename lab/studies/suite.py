@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
-from lab.report.page import render, save_figure
+from lab.report.page import on_page, render, save_figure
 from lab.report.plots import BLUE, GREY, STYLE, VERMILION, canvas
 from lab.studies.case import Case, Line, Outcome
 from lab.studies.engine import Kept, choose, word
@@ -26,7 +26,8 @@ SMALLEST, LARGEST = 1e-6, 1e6  # shares of the tolerance; what lies beyond is dr
 class Suite:
     """Cases under the name of the command that runs them, whose last word names the files unless `file` does.
 
-    `about` stands above them on the page, `texts` under the headings of sections.
+    `about` stands above them on the page, `texts` under the headings of sections; of its figures the page shows that
+    named `shown`.
     """
 
     command: str
@@ -35,6 +36,7 @@ class Suite:
     about: str
     texts: Mapping[str, str] = field(default_factory=dict)
     file: str = ""
+    shown: str = "errors"
 
     @property
     def name(self) -> str:
@@ -106,10 +108,13 @@ class Suite:
             sections.setdefault(case["section"], []).append(case)
         with matplotlib.rc_context(STYLE):
             errors = save_figure(folder / f"{self.name}-errors.png", errors_figure(records)).name if lines else ""
+        files = [errors, *(picture["file"] for one in cases for picture in one["pictures"])]
         return render(
             folder / f"{self.name}.md",
             "suite.md.j2",
             title=self.title,
+            command=self.command,
+            **on_page(files, f"{self.name}-{self.shown}.png"),
             about=self.about,
             texts=self.texts,
             within=sum(line["passed"] for line in lines),

@@ -109,12 +109,13 @@ class Source(Strict):
 
 
 class Report(Strict):
-    """A report: its title, its files of claims in their order, how its full runs differ from the source's own, and
-    what its source is."""
+    """A report: its title, its files of claims in their order, how its full runs differ from the source's own,
+    the experiment whose figure its page shows, and what its source is."""
 
     title: str
     files: list[str]
     less: str
+    shown: str
     source: str = "The source is Spandonidis (2016), doctoral thesis, NTUA."
 
 

@@ -11,7 +11,7 @@ from lab.measures.value import LEVEL
 from lab.preset.accuracy import LEVELS
 from lab.recording import open_recording
 from lab.report.kept import Made, processor
-from lab.report.page import render, save_figure
+from lab.report.page import on_page, render, save_figure
 from lab.report.plots import STYLE
 from lab.studies.reproduce.cached import CachedResult, asked, read_cached, write_cached
 from lab.studies.reproduce.claims import reports
@@ -50,6 +50,7 @@ def write_page(
     told = sorted(findings, key=lambda one: _badness(findings[one].rows), reverse=True)
     missing = [one for one in experiments if one not in findings]
     rows = [row for finding in findings.values() for row in finding.rows]
+    files = [one.figure for one in findings.values()] + [one.picture for one in findings.values()]
     less = reports()[name].less.replace("{draft}", LEVELS["draft"].error)
     return render(
         out / f"{page_name(name, quick)}.md",
@@ -63,6 +64,7 @@ def write_page(
         level=f"{100.0 * LEVEL:g}",
         limits=QUICK if quick else less,
         quick=quick,
+        **on_page(files, f"{page_name(name, quick)}-{reports()[name].shown}.png"),
         overview=[_overview(experiments[one], findings.get(one), quick) for one in (*told, *missing)],
         sections=[(experiments[one], findings[one], _cells(findings[one].rows)) for one in told],
     )

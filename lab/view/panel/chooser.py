@@ -109,7 +109,7 @@ class Chooser:
 
 def _poster(name: str, size: tuple[int, int]) -> Image.Image:
     """The preset's poster from the gallery, or a sketch of its tank."""
-    path = POSTERS / f"{name.replace('/', '-')}.png"
+    path = POSTERS / f"{name.replace('/', '-')}.webp"
     if path.exists():
         return ImageOps.fit(Image.open(path).convert("RGB"), (size[0] - 1, size[1] - 1))
     return _sketch(name, (size[0] - 1, size[1] - 1))

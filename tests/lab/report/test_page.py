@@ -1,8 +1,11 @@
 """Pages are made by templates, and show all that a study has to show."""
 
+import re
+
 import pytest
 from jinja2 import UndefinedError
 from matplotlib.figure import Figure
+from PIL import Image
 
 from lab.report.page import Page, render
 from lab.studies.engine import write_sections
@@ -18,7 +21,23 @@ def test_a_page_shows_the_blocks_of_its_studies(tmp_path):
     text = write_sections(tmp_path / "trial.md", "A trial", results, "About\n it.").read_text()
     assert text.startswith("# A trial\n\nMade by hand.\n\nAbout it.\n\n## One\n\nA sentence in lines.\n\n| a | b |")
     assert "| 1.23 | x |\n| none | 2 |" in text
-    assert "![What it shows](trial-drawn.png)" in text and (tmp_path / "trial-drawn.png").stat().st_size > 500
+    assert "![What it shows](trial-drawn.png)" in text
+    with Image.open(tmp_path / "trial-drawn.png") as drawn:
+        assert min(drawn.size) > 200
+
+
+def test_one_figure_stands_on_a_page_and_the_others_are_named(tmp_path):
+    page = Page(tmp_path, "trial")
+    for name in ("first", "second", "third"):
+        page.figure(name, Figure(), f"The {name}")
+    results = {"one": {"said": "Made by hand.", "blocks": page.blocks}}
+    for wanted, shown in (("second", "second"), ("none", "first")):
+        text = write_sections(tmp_path / "trial.md", "A trial", results, "", f"trial-{wanted}.png").read_text()
+        assert re.findall(r"]\((.+?)\)", text) == [f"trial-{shown}.png"]
+        assert "`cargolab bench trial STUDY` writes the others" in text
+        assert sorted(re.findall(r"`(trial-\w+\.png)`", text)) == sorted(
+            f"trial-{one}.png" for one in {"first", "second", "third"} - {shown}
+        )
 
 
 def test_what_was_made_at_different_times_says_so_itself(tmp_path):

@@ -31,7 +31,7 @@ def test_the_page_has_every_preset_and_the_results_of_those_that_ran(clip, tmp_p
     assert "final shift</td><td>2.0 diameters (1 bed)" in text
     assert "a grain &lt;fell&gt;" in text
     assert "draft accuracy, 3 beds; version 0.2.0, 2026-01-02" in text
-    assert re.findall(r'(?:src|poster)="([^"]*)"', text) == ["tilting-quick.png", *filter(None, [clip])]
+    assert re.findall(r'(?:src|poster)="([^"]*)"', text) == ["tilting-quick.webp", *filter(None, [clip])]
 
 
 def test_numbers_are_written_for_readers():
@@ -64,7 +64,7 @@ def test_a_preset_is_run_filmed_and_not_run_again(tmp_path, monkeypatch):
     assert told["accuracy"] == "draft" and told["beds"] == 2 and told["version"] == __version__
     assert "(2 beds)" in told["numbers"]["critical_angle"]
     made = {path.name for path in tmp_path.iterdir()}
-    assert made == {"index.html", "runs", "tilting-quick.mp4", "tilting-quick.png", "tilting-quick.json"}
+    assert made == {"index.html", "runs", "tilting-quick.mp4", "tilting-quick.webp", "tilting-quick.json"}
     monkeypatch.setattr(gallery, "carry_out", None)
     make_gallery(["tilting/quick"], tmp_path, quiet=True, beds=2)
 

@@ -497,7 +497,7 @@ def test_the_kept_results_in_the_gallery_are_of_the_present_experiments(report_n
 def test_a_page_alone_keeps_results_of_other_runs_in_their_file(tmp_path):
     kept = tmp_path / "granular.json"
     gallery = Path(__file__).parents[3] / "renders" / "gallery"
-    text = (gallery / "granular" / "granular.json").read_text().replace('"asked": "', '"asked": "0')
+    text = (gallery / "granular" / "granular.json").read_text().replace('"asked":"', '"asked":"0')
     kept.write_text(text)
     assert "not run" in reproduce("granular", [], tmp_path, quick=False, quiet=True, page_only=True).read_text()
     assert kept.read_text() == text

@@ -44,7 +44,8 @@ def test_fast_cases_pass_and_leave_a_page(tmp_path, capsys):
     assert [*told(tmp_path)] == names
     pictures = {picture.name for picture in tmp_path.glob("*.png")}
     assert pictures == {f"verify-{name}.png" for name in PICTURES}
-    assert all(f"({name})" in page for name in pictures)
+    assert "](verify-errors.png)" in page and page.count("](") == 1, "one figure stands on the page"
+    assert all(f"`{name}`" in page for name in pictures - {"verify-errors.png"})
 
 
 def test_an_error_relative_to_nothing_is_no_line():
