@@ -42,5 +42,7 @@ def test_each_bed_has_its_colour_and_the_same_size_in_the_picture(tmp_path):
 def test_the_gallery_shows_the_cargoes_that_were_run(tmp_path, monkeypatch):
     monkeypatch.setattr(gallery, "_show", lambda name, out, beds, progress: bed(out / "runs" / name, 1.0))
     text = make_gallery(["shapes/wheat"], tmp_path, quiet=True).read_text()
-    assert 'src="cargoes.png"' in text
-    assert len(cells(tmp_path / "cargoes.png")) == COLUMNS
+    assert f'src="{gallery.CARGOES}"' in text
+    assert len(cells(tmp_path / "runs" / "cargoes.png")) == COLUMNS
+    with Image.open(tmp_path / gallery.CARGOES) as card:
+        assert card.width == gallery.WIDE[0]
