@@ -124,13 +124,12 @@ def creep_does_not_depend_on_the_step(run, states) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("law", ["hertz-viscoelastic", "linear"])
-def test_column_carries_its_weight_and_rests(law):
-    """Every contact of a column carries the weight above it, as its law says, and nothing stirs."""
+def test_column_carries_its_weight_and_rests():
+    """Every contact of a column carries the weight above it, by the linear law; Hertz's is a case of verify."""
     radius, count = 1.5e-3, 12
     height = radius * (1 + 2 * np.arange(count))
     position = np.column_stack([np.zeros(count), height])[None]
-    run = simulation(position, radius, box(2 * radius * 1.0001, 0.06), normal=law, stiffness_scale=1e-3)
+    run = simulation(position, radius, box(2 * radius * 1.0001, 0.06), normal="linear", stiffness_scale=1e-3)
     assert run.settle(1e-12, 3.0)
     above = run.grains.mass[0, 0] * G * np.arange(count, 0, -1)
     z = run.snapshot()["position"][0, :, 1]
@@ -141,11 +140,8 @@ def test_column_carries_its_weight_and_rests(law):
         / 3
         * np.array([wall.young_modulus * np.sqrt(radius), *[pair.young_modulus * np.sqrt(radius / 2)] * (count - 1)])
     )
-    if law == "linear":
-        mass = run.grains.mass[0, 0] * np.array([1.0, *[0.5] * (count - 1)])
-        force = 0.8**0.8 * (k**4 * mass) ** 0.2 * overlap
-    else:
-        force = k * overlap**1.5
+    mass = run.grains.mass[0, 0] * np.array([1.0, *[0.5] * (count - 1)])
+    force = 0.8**0.8 * (k**4 * mass) ** 0.2 * overlap
     assert force == pytest.approx(above, rel=2e-3)
     run.advance(int(0.2 / run.dt))
     later = run.snapshot()["position"][0]
