@@ -96,7 +96,9 @@ def _check_place(tank: np.ndarray, part: PartGroup, key: str) -> None:
         places = np.concatenate([places, _between_walls(begin, end, tank)])
         inside = outline.holds(places) | (places[:, 1] >= top - left)
         for step in left * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)]):
-            inside |= outline.holds(places + step)
+            if inside.all():
+                break
+            inside[~inside] = outline.holds(places[~inside] + step)
         if not inside.all():
             y, z = places[(~inside).argmax()]
             where = f"[{show(float(y), 'm')}, {show(float(z), 'm')}]"
