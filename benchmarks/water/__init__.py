@@ -5,7 +5,7 @@ JSON.
 """
 
 from benchmarks.bench import Bench
-from benchmarks.water import accuracy, beside_air, front, levels, sizes, speed, vector
+from benchmarks.water import accuracy, beside_air, front, levels, sizes, speed, terms, vector
 
 STUDIES = {
     "speed": speed.study,
@@ -15,6 +15,7 @@ STUDIES = {
     "sizes": sizes.study,
     "vector": vector.study,
     "air": beside_air.study,
+    "terms": terms.study,
 }
 ABOUT = """Times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and of the
 ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for a million
