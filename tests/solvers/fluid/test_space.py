@@ -102,6 +102,18 @@ def test_a_tank_on_end_holds_the_water_as_before(run):
     np.testing.assert_allclose(found[:, 0], -place[:, 2], atol=1e-10 * SPACING)
 
 
+def test_a_run_goes_on_bit_for_bit(run):
+    """What is restored from the state of a step goes on as the run that was not interrupted."""
+    again(run, disturbed(3)).advance(15)
+    kept = run.state()
+    run.advance(15)
+    whole = run.state()
+    run.restore(kept)
+    run.advance(15)
+    for name, values in run.state().items():
+        np.testing.assert_array_equal(values, whole[name], err_msg=name)
+
+
 def over_earth(points: np.ndarray, time: float) -> np.ndarray:
     """Where points (n, 3) m of a tank moved by MOVES are over the earth, the first motion innermost."""
     roll, pitch, surge = (one.amplitude * np.sin(2.0 * np.pi * one.frequency * time) for one in MOVES)

@@ -68,7 +68,7 @@ def paint_liquid(
     key = np.array(KEY) / np.linalg.norm(KEY)
     light = np.array([*key, *TAKEN, deep, spacing])
     _shade(picture, picture.copy(), even, layers.depth, thick, light, camera.gaze.axes @ [0.0, 1.0, 0.0], found.lens)
-    np.minimum(layers.depth, even, out=layers.depth)
+    np.minimum(layers.depth, even + 0.3 * spacing, out=layers.depth)  # edges that touch it are before it
 
 
 def _thickness(layers: Layers, camera: SpaceCamera, place: np.ndarray, spacing: float, across: float) -> np.ndarray:
