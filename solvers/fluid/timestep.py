@@ -81,11 +81,11 @@ def longest_pace(scene, step: float) -> int:
     """
     if not (scene.fluid and scene.grains and (scene.vessels or scene.hold or scene.mixture)):
         return 1
-    if scene.mixture:
-        return max(1, min(MOST_SUBSTEPS, int(min(limit.step for limit in limits_of_water(scene)) / step)))
     if scene.hold:
         longest = min(*(limit.step for limit in limits_of_water(scene)), SHARE_OF_COLLISION * shortest_collision(scene))
-        return max(1, int(longest / step))
+        return max(1, min(MOST_SUBSTEPS, int(longest / step))) if scene.mixture else max(1, int(longest / step))
+    if scene.mixture:
+        return max(1, min(MOST_SUBSTEPS, int(min(limit.step for limit in limits_of_water(scene)) / step)))
     water = scene.fluid.water
     if water.added_mass == "layer" or water.model == "level" or scene.vessels[0].handover:
         return 1

@@ -63,7 +63,7 @@ class Mover:
                 for a in ti.static(range(g.axes)):
                     acceleration[a] = ti.cast(gain[a], g.real)
                 turn[0] = torque[0] * g.inverse_inertia[w, i] + ti.cast(gain[2], g.real)
-            if ti.static(self.is_wet):
+            if ti.static(self.is_wet and not self.is_aboard):
                 self.water.act(w, i, acceleration, b, kick)
             square = self.integrator.step(g, self.extra, w, i, acceleration, turn, kick, dt)
             if ti.static(g.shaped):
@@ -126,6 +126,8 @@ class Mover:
         push = [force[a] * g.inverse_mass[w, i] for a in ti.static(range(g.axes))]
         place = [g.place[a][w, i] for a in ti.static(range(g.axes))]
         speed = [g.velocity[a][w, i] for a in ti.static(range(g.axes))]
+        if ti.static(self.is_wet):
+            self.water.act_aboard(w, i, place, speed, push, kick)
         return self.hold.gain(w, place, speed, push, kick, dt)
 
     @ti.func

@@ -12,8 +12,10 @@ from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
 from solvers.mixture.drag import DRAG
+from solvers.mixture.frame import InTank, OnHull
 from solvers.mixture.given import Mixture
 from solvers.mixture.porosity import Porosity
+from solvers.mixture.pull import Pull
 from solvers.mixture.start import Laying
 from solvers.space.axes import dot, named
 from solvers.tank.context import Context
@@ -21,11 +23,10 @@ from solvers.tank.matter import Matter
 
 NEAR, FAR = 1.0, 1.5  # spacings in the bed from a particle of water: drag on a grain is whole, and none
 THIN = 1.0e-6  # m²/s, kinematic viscosity at most of the liquid out of which a bed settles: that of water
-FEW = 0.05  # of x, below which the means over a step are told by their series
 
 
 @ti.data_oriented
-class Exchange:
+class Exchange(Pull):
     """A grain feels −V_g ∇p + V_g ∇·τ + F_d, and the water the opposite (Anderson & Jackson 1967).
 
     The water's own pairs and walls make the force F_i on a particle as if it filled its volume alone. It keeps ε_i F_i,
@@ -57,13 +58,16 @@ class Exchange:
     """
 
     def __init__(self, arrays: State, context: Context, scene, grains: GrainMatter, water: WaterMatter):
+        self.scene, hold = scene, grains.mover.hold
         self.grains, self.water, self.carrier = grains.grains, water, context.carrier
         self.particles, self.constants, self.order = water.particles, water.constants, water.order
         self.lists, self.ranges, self.poses, self.substeps = water.lists, water.ranges, water.poses, water.substeps
         self.water_units, self.units = water.units, context.units(self.grains.count)
         mixture: Mixture = scene.mixture
         self.law, thickness = DRAG[mixture.drag](), scene.tanks[scene.hold].thickness
-        self.porosity = Porosity(arrays, water.context, self.grains, context.walls.bounds, thickness)
+        hulled = arrays, scene, self.grains, hold, water.bodies.hulls, context.parts
+        self.frame = frame = OnHull(*hulled) if hold else InTank(self.grains)
+        self.porosity = Porosity(arrays, water.context, frame, context.walls.bounds, thickness)
         self.laying = Laying(scene)
         g, own = self.grains, arrays.under("mixture")
         each = Axis("world", g.worlds), Axis("place", g.count)
@@ -78,15 +82,19 @@ class Exchange:
         self.numbers = own.holding("numbers", np.array([thickness, density, viscosity, 1.0 / mixture.finer]), "number")
         self.own_drag, self.thin = (viscosity, 1.0 / mixture.finer), (min(viscosity, density * THIN), 1.0)
         first, last = water.substeps.first, water.substeps.last
-        self.opening = first([Phase(self.porosity.sort), Phase(self.porosity.find, water.units)])
+        noting = [Phase(frame.note)] if frame.aboard else []
+        self.opening = first([*noting, Phase(self.porosity.sort), Phase(self.porosity.find, water.units)])
         self.phases = first([Phase(self.gather, self.units)])
         self.closing = last([Phase(self.close), Phase(self.spread, water.units)])
 
     def lay(self, position: np.ndarray) -> np.ndarray:
-        """The water (W, n) at rest between grains at `position` (W, n, 2) m; what was is forgotten."""
+        """The water (W, n) at rest between grains at `position` (W, n, 2) m; what was is forgotten.
+
+        Grains in a hull are dry at first, and the water is where the scene has it.
+        """
         for field in self.former:
             field.fill(0.0)
-        return self.laying.particles(position)
+        return self.scene.fluid.particles if self.frame.aboard else self.laying.particles(position)
 
     def ease(self, settles: bool) -> None:
         """Let the water drain out of a bed that `settles` as through grains of its own size, and be as thin as water.
@@ -101,21 +109,12 @@ class Exchange:
         w = self.units.world(u)
         for i in range(self.units.first(u), self.units.end(u)):
             self.gather_at(w, i, ti.select(i < self.grains.mobile, dt / self.substeps.every, kick))
-            for a in ti.static(range(self.grains.axes)):
-                self.lead(a, w, i, dt)
-
-    @ti.func
-    def lead(self, axis: ti.template(), w, i, dt):
-        """Give a grain the half step by which its velocity is ahead of the water's, as far as the lift has changed."""
-        g, lift = self.grains, self.lift[axis][w, i]
-        jump = 0.5 * dt * g.inverse_mass[w, i] * (lift - self.former[axis][w, i])
-        g.velocity[axis][w, i] = g.velocity[axis][w, i] + jump
-        self.former[axis][w, i] = lift
+            self.lead(w, i, kick, dt)
 
     @ti.func
     def gather_at(self, w, i, during):
         """As `gather`, for a grain whose own steps last so long (s)."""
-        p, c, g, order = self.particles, self.constants, self.grains, self.order
+        p, c, order = self.particles, self.constants, self.order
         zero = ti.cast(0.0, p.real)
         far = ti.cast(c.get("reach") + 0.5 * self.lists.fixed_skin, p.where)
         seen, porosity, near = zero, zero, ti.cast(1e30, p.real)
@@ -124,7 +123,7 @@ class Exchange:
         start = w * p.stride * p.lanes
         for n in range(self.porosity.images):
             image = self.porosity.image(n)
-            here = [g.place[a][w, i] - self.porosity.shift(image, a) for a in ti.static(range(p.axes))]
+            here = [self.frame.place[a][w, i] - self.porosity.shift(image, a) for a in ti.static(range(p.axes))]
             left, right = order.bin_of(here[0] - far), order.bin_of(here[0] + far)
             for strip in range(order.strip_of(here[1] - far), order.strip_of(here[1] + far) + 1):
                 begin, end = (
@@ -136,6 +135,10 @@ class Exchange:
                     apart = [ti.cast(here[a] - p.place[a][b, lane], p.real) for a in ti.static(range(p.axes))]
                     square = dot(apart, apart)
                     weight = c.kernel.value(ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0))
+                    if ti.static(self.frame.aboard):
+                        away = [0.0 - apart[a] for a in ti.static(range(p.axes))]
+                        weight *= self.frame.share_of_one(w, b, lane, self.short(here), away)
+                        square = ti.select(weight > 0.0, square, ti.cast(1e30, p.real))
                     heavy, weight = weight * p.mass[b, lane], weight * p.volume[b, lane]
                     seen += weight
                     porosity += weight * p.porosity[b, lane]
@@ -169,13 +172,27 @@ class Exchange:
             self.flow[a][w, i] = flow[a] - walls[a]
             self.lift[a][w, i] = volume * lift[a]
             self.rise[a][w, i] = push[a] / (seen * density)
-        slip = [self.flow[a][w, i] - g.now[a][w, i] for a in ti.static(range(p.axes))]
+        now = self.now(w, i)
+        slip = [self.flow[a][w, i] - now[a] for a in ti.static(range(p.axes))]
         size = 2.0 * radius * self.numbers[3]
         law = self.law.coefficient(ti.sqrt(dot(slip, slip)), porosity, size, density, self.numbers[2])
         rate, partner = wet * volume * law, (1.0 - porosity) / (density * porosity * volume)
         first, second = self.means(rate * (g.inverse_mass[w, i] + partner) * ti.cast(during, g.real))
         self.partner[w, i], self.held[w, i] = partner, rate * first
         self.gained[w, i] = rate * second * ti.cast(during, g.real)
+
+    @ti.func
+    def short(self, place: ti.template()):
+        """A place (m) with the digits of what is in a block."""
+        return [ti.cast(place[a], self.particles.real) for a in ti.static(range(self.particles.axes))]
+
+    @ti.func
+    def now(self, w, i):
+        """The velocity (m/s) of a grain in the tank as the step of the water begins."""
+        if ti.static(self.frame.aboard):
+            return self.frame.now(w, i)
+        else:
+            return [self.grains.now[a][w, i] for a in ti.static(range(self.grains.axes))]
 
     @ti.func
     def walls_at(self, w, i):
@@ -187,35 +204,6 @@ class Exchange:
             walls[0] = ti.cast(self.poses.walls[3][w], real) - rate * ti.cast(g.place[1][w, i], real)
             walls[1] = ti.cast(self.poses.walls[4][w], real) + rate * ti.cast(g.place[0][w, i], real)
         return walls
-
-    @ti.func
-    def act(self, w, i, acceleration: ti.template(), felt: ti.template(), kick):
-        """Add what the water does to a grain to its `acceleration` (m/s²); `felt` (m/s²) is what all feel in the tank.
-
-        The velocity of the water at the grain changes with the grain's own through the base steps of one of the water.
-        Drag is that of a whole step, also in the half kick with which a run begins. There is no branch and no call in
-        this, so that it is compiled into SIMD instructions.
-        """
-        g, partner, light = self.grains, self.partner[w, i], self.grains.inverse_mass[w, i]
-        held, gained = self.held[w, i], self.gained[w, i]
-        for a in ti.static(range(g.axes)):
-            lift, flow = self.lift[a][w, i], self.flow[a][w, i]
-            pushed, risen = acceleration[a] + light * lift, self.rise[a][w, i] + felt[a]
-            drag = held * (flow - g.velocity[a][w, i]) + gained * (risen - pushed)
-            acceleration[a] = pushed + light * drag
-            self.flow[a][w, i] = flow + kick * (risen - partner * drag)
-            self.impulse[a][w, i] = self.impulse[a][w, i] + kick * drag
-
-    @ti.func
-    def means(self, x):
-        """(1 − e^−x)/x and (x − 1 + e^−x)/x²: means over a step of what decays, and of what grows against decay."""
-        safe = ti.max(x, FEW)
-        lost = 1.0 - ti.exp(-safe)
-        first, second = lost / safe, (safe - lost) / (safe * safe)
-        if x < FEW:
-            first = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0))
-            second = 0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x / 120.0))
-        return first, second
 
     @ti.func
     def close(self, w, frame, kick, dt):
@@ -254,6 +242,8 @@ class Exchange:
                         ]
                         t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * c.get("shrink"), 0.0)
                         weight = c.kernel.value(t)
+                        if ti.static(self.frame.aboard):
+                            weight *= self.frame.share(w, b, of.place_of(w, k), apart)
                         for a in ti.static(range(p.axes)):
                             push[a] += self.push[a][w, k] * weight
             mass, share = p.load(p.mass, b), p.load(p.porosity, b)

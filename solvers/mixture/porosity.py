@@ -4,8 +4,9 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists.context import FluidContext
-from solvers.grains.state import GrainState
 from solvers.machine.state import Axis, State
+from solvers.mixture.frame import InTank
+from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
 from solvers.space.cells import Cells
 
@@ -24,16 +25,19 @@ class Porosity:
     The mass of a particle is ρ ε V. As ε changes it keeps its mass and its volume, so that the density takes up the
     change: ρ' ε' = ρ ε.
 
-    Limits: grains behind a plate are seen, too; ε is LEAST at least, Γ LEAST_OPEN. Units: V_g m³, V_w m², W 1/m², b m.
+    Limits: ε is LEAST at least, Γ LEAST_OPEN; what the walls of a hull hide, `OnHull` says.
+
+    Units: V_g m³, V_w m², W 1/m², b m.
     """
 
-    def __init__(self, arrays: State, context: FluidContext, grains: GrainState, bounds, thickness: float):
+    def __init__(self, arrays: State, context: FluidContext, frame: InTank, bounds, thickness: float):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
-        self.lists, self.constants, self.grains = context.lists, context.constants, grains
+        self.lists, self.constants = context.lists, context.constants
+        self.frame, self.grains = frame, (grains := frame.grains)
         lower, upper = (np.asarray(corner)[: grains.axes] for corner in bounds)
         images = self.lists.images
         self.images, self.stride = len(images), images[1] - images[0] if len(images) > 1 else 0
-        self.cells = Cells(arrays.under("mixture"), grains, lower, upper, 0.5 * self.lists.order.grid.spacing)
+        self.cells = Cells(arrays.under("mixture"), frame, lower, upper, 0.5 * self.lists.order.grid.spacing)
         own, each = arrays.under("mixture"), (Axis("world", grains.worlds), Axis("place", grains.count))
         self.place = own.reals(each, *named("place", grains.axes), kind=own.place, kept=False)
         (self.area,) = own.reals(each, "area", kept=False)
@@ -49,7 +53,7 @@ class Porosity:
         for k in range(self.grains.count):
             i = self.cells.sorted[w, k]
             for a in ti.static(range(self.grains.axes)):
-                self.place[a][w, k] = self.grains.place[a][w, i]
+                self.place[a][w, k] = self.frame.place[a][w, i]
             radius = self.grains.radius[w, i]
             self.area[w, k] = self.sphere[0] * radius * radius * radius
 
@@ -68,6 +72,8 @@ class Porosity:
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         shrink, crowd, walled = c.get("shrink"), p.zeros(), p.zeros()
         w = self.units.world(u)
+        if ti.static(self.frame.aboard):
+            self.lists.bodies.hulls.note_block(b)
         for n in range(self.images):
             image = self.image(n)
             lower, upper = lists.box(b)
@@ -79,14 +85,20 @@ class Porosity:
                         for a in ti.static(range(p.axes))
                     ]
                     t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-                    crowd += self.area[w, k] * c.kernel.value(t)
+                    weight = c.kernel.value(t)
+                    if ti.static(self.frame.aboard):
+                        weight *= self.frame.share(w, b, self.place_of(w, k), apart)
+                    crowd += self.area[w, k] * weight
         if ti.static(p.wall_blocks > 0):
             pieces = lists.pieces
             for k in range(lists.beside.first[u, listed * pieces], lists.beside.first[u, (listed + 1) * pieces]):
                 j = lists.beside.slots[u, k]
                 apart = lists.apart(own, origin, j)
                 t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
-                walled += p.volume[lists.block_of(j), lists.lane_of(j)] * c.kernel.value(t)
+                weight = c.kernel.value(t)
+                if ti.static(self.frame.aboard):
+                    weight *= lists.visible(b, j, apart, AT_START)
+                walled += p.volume[lists.block_of(j), lists.lane_of(j)] * weight
         value = c.get("value")
         whole = value / ti.max(1.0 - value * walled, LEAST_OPEN)
         found = ti.max(1.0 - whole * crowd, LEAST)
@@ -95,6 +107,11 @@ class Porosity:
         before = ti.select(before > 0.0, before, found)  # not known yet: they start with their densities
         p.store(p.deviation, b, (1.0 + s) * (before / found) - 1.0)
         p.store(p.porosity, b, found)
+
+    @ti.func
+    def place_of(self, w, k):
+        """The place (m) of the k-th of the sorted grains, with the digits of what is in a block."""
+        return [ti.cast(self.place[a][w, k], self.particles.real) for a in ti.static(range(self.grains.axes))]
 
     @ti.func
     def image(self, n):

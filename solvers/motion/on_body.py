@@ -10,7 +10,8 @@ from solvers.motion.frame import turned
 from solvers.motion.free import CENTRE_Y, CENTRE_Z, HELD, LOOSE, FreeBodies
 
 LAG, BEFORE_Y, BEFORE_Z, BEFORE, AFTER_Y, AFTER_Z, AFTER, KEPT, TURNED, COSINE, SINE, PULL_Y, PULL_Z = range(13)
-NUMBERS = 13
+THEN_COSINE, THEN_SINE, NOW_COSINE, NOW_SINE = range(13, 17)  # the body's turn, half a step before and now
+NUMBERS = 17
 
 
 @ti.data_oriented
@@ -41,14 +42,16 @@ class OnBody:
     `pieces` bear the load of the cargo: the walls of these tanks, the parts in them, and fixed grains. Their loads are
     in the body's axes, about the drawn origin. `noted` (W, numbers) is what grains need of the body in a step: how long
     (s) before its beginning its velocities are of that time; V and ω before and after the step's kick; D; R(θ_n −
-    θ_(n+½)); R(−θ_(n+½)) g. `gathered` (N s, N m s) is the cargo's impulse that the body has not taken yet, over `span`
-    (s), with `former` the load as its last step began; `done` counts the grains' steps in a step of the body.
+    θ_(n+½)); R(−θ_(n+½)) g; where grains are `wet`, R(θ_(n−½)) and R(θ_n), too. `gathered` (N s, N m s) is the cargo's
+    impulse that the body has not taken yet, over `span` (s), with `former` the load as its last step began; `done`
+    counts the grains' steps in a step of the body.
     """
 
     moving, spatial = True, False
 
     def __init__(self, arrays: State, scene, bodies: FreeBodies, carrier):
         self.bodies, self.gravity, self.exact, self.every = bodies, carrier.gravity, arrays.exact, bodies.every
+        self.wet = scene.mixture is not None  # whether water of the tank of the body acts on the cargo
         aboard = scene.tanks[scene.hold].aboard
         holds = [k for k, tank in enumerate(scene.tanks) if tank.aboard == aboard]
         inner = [bodies.first + k for k, part in enumerate(scene.parts) if part.tank in holds]
@@ -133,6 +136,56 @@ class OnBody:
         self.noted[w, COSINE], self.noted[w, SINE] = rest[0], rest[1]
         pull = turned(0.0, -self.gravity[0], -later)
         self.noted[w, PULL_Y], self.noted[w, PULL_Z] = pull[0], pull[1]
+        if ti.static(self.wet):
+            self.note_axes(w, turn - lag * before[2], turn)
+
+    @ti.func
+    def note_axes(self, w, then, now):
+        """Note the turns of the body at the time of the grains' velocities, and at that of their places."""
+        before, at = turned(1.0, 0.0, then), turned(1.0, 0.0, now)
+        self.noted[w, THEN_COSINE], self.noted[w, THEN_SINE] = before[0], before[1]
+        self.noted[w, NOW_COSINE], self.noted[w, NOW_SINE] = at[0], at[1]
+
+    @ti.func
+    def note_held(self, w):
+        """Note for a step of the body that it stands as drawn, if it is held."""
+        if self.bodies.state[w, self.body] == HELD:
+            zero = ti.cast(0.0, self.exact)
+            for k in ti.static((LAG, BEFORE_Y, BEFORE_Z, BEFORE)):
+                self.noted[w, k] = zero
+            self.note_axes(w, zero, zero)
+
+    @ti.func
+    def over_earth(self, w, place: ti.template(), speed: ti.template()):
+        """The velocity (m/s) over the earth, in the axes of the tank of the body, that a `speed` of a grain means."""
+        n = ti.static(self.noted)
+        y, z = ti.cast(place[0], self.exact), ti.cast(place[1], self.exact)
+        v_y, v_z = ti.cast(speed[0], self.exact), ti.cast(speed[1], self.exact)
+        u_y = n[w, BEFORE_Y] + v_y - n[w, BEFORE] * (z - n[w, LAG] * v_z)
+        u_z = n[w, BEFORE_Z] + v_z + n[w, BEFORE] * (y - n[w, LAG] * v_y)
+        cos, sin = n[w, THEN_COSINE], n[w, THEN_SINE]
+        return ti.Vector([cos * u_y - sin * u_z, sin * u_y + cos * u_z])
+
+    @ti.func
+    def into_tank(self, w, y, z):
+        """A vector of now, told in the body's axes, in those of the tank of the body."""
+        cos, sin = self.noted[w, NOW_COSINE], self.noted[w, NOW_SINE]
+        return ti.Vector([cos * y - sin * z, sin * y + cos * z])
+
+    @ti.func
+    def into_body(self, w, y, z):
+        """The reverse of `into_tank`."""
+        cos, sin = self.noted[w, NOW_COSINE], self.noted[w, NOW_SINE]
+        return ti.Vector([cos * y + sin * z, cos * z - sin * y])
+
+    @ti.func
+    def before_turn(self, w, kick, dt):
+        """The body's turn (rad) at the time of its cargo's velocities, as a step of its own of dt (s) begins."""
+        lag = (kick - 0.5 * dt) / self.every
+        turn = self.bodies.place[2][w, self.body]
+        if self.bodies.state[w, self.body] != HELD:
+            turn -= lag * self.bodies.velocity[2][w, self.body]
+        return turn
 
     @ti.func
     def note_velocity(self, w, first: ti.template(), turn, u: ti.template()):

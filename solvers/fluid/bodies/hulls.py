@@ -157,7 +157,7 @@ class Hulls:
             if hidden.sum() > 0.0:
                 closed = p.ones()
                 for n in ti.static(range(self.openings)):
-                    closed *= 1.0 - self.through(n, b // p.stride, place, apart)
+                    closed *= 1.0 - self.through(n, b // p.stride, place, apart, p.zeros(), p.ones())
                 if own >= 0 or other >= 0:
                     share *= 1.0 - behind * (1.0 - closed)
                 else:
@@ -171,14 +171,15 @@ class Hulls:
         return b % p.stride - (p.fluid_blocks + self.first[0])
 
     @ti.func
-    def through(self, n: ti.template(), w, place: ti.template(), apart: ti.template()):
+    def through(self, n: ti.template(), w, place: ti.template(), apart: ti.template(), none, all_of):
         """Whether lines from a place to others, `apart` from it, lead through the wall in an opening, 0 to 1.
 
         It is 1 within, and fades over a smoothing length from the ends of the opening on, in the wall. A line that
-        comes no nearer to the middle of the wall than half the wall does not lead through it here.
+        comes no nearer to the middle of the wall than half the wall does not lead through it here. `none` and `all_of`
+        are 0 and 1 for each of the others.
         """
         p, k = self.particles, ti.static(self.hole_owners[n])
-        found = p.zeros()
+        found = none
         if self.open[w, n] == 1:
             c = ti.cast(self.pieces.poses[w, k, COSINE], p.real)
             s = ti.cast(self.pieces.poses[w, k, SINE], p.real)
@@ -189,13 +190,13 @@ class Hulls:
             off = [place[0] - o[0] - (c * start[0] - s * start[1]), place[1] - o[1] - (s * start[0] + c * start[1])]
             beyond = apart[1] * along[0] - apart[0] * along[1]
             across = off[1] * along[0] - off[0] * along[1]
-            least = ti.select(beyond * beyond > 1e-30, beyond, p.ones())
+            least = ti.select(beyond * beyond > 1e-30, beyond, all_of)
             share = ti.max(0.0, ti.min(1.0, (0.0 - across) / least))
             way = dot(off, along) + share * dot(apart, along)
             sharp, length = ti.cast(self.lines[n, SHARP], p.real), ti.cast(self.lines[n, LENGTH], p.real)
             deep = ti.max(0.0, ti.min(1.0, ti.min(way, length - way) * sharp + 1.0))
             off_middle, half = across + share * beyond, ti.cast(self.lines[n, BLEND], p.real)
-            near = ti.select(off_middle * off_middle < half * half, p.ones(), p.zeros())
+            near = ti.select(off_middle * off_middle < half * half, all_of, none)
             found = near * (deep * deep * (3.0 - 2.0 * deep))
         return found
 
