@@ -78,14 +78,6 @@ class OnHull:
         return [ti.cast(u_y, g.real), ti.cast(u_z, g.real)]
 
     @ti.func
-    def turned_back(self, w, vector: ti.template(), kick, dt):
-        """A vector in the tank's axes in those of the hull at the time of the grains' velocities."""
-        turn = self.hold.before_turn(w, ti.cast(kick, self.hold.exact), ti.cast(dt, self.hold.exact))
-        cos, sin = ti.cos(turn), ti.sin(turn)
-        y, z = ti.cast(vector[0], self.hold.exact), ti.cast(vector[1], self.hold.exact)
-        return [ti.cast(cos * y + sin * z, self.grains.real), ti.cast(cos * z - sin * y, self.grains.real)]
-
-    @ti.func
     def share(self, w, b, place: ti.template(), apart: ti.template()):
         """With which share a grain at a `place` (m) meets each particle of a block b, which is `apart` (m) from it."""
         p = self.hulls.particles

@@ -21,9 +21,10 @@ class Pull:
             for a in ti.static(range(g.axes))
         ]
         if ti.static(self.frame.aboard):
-            back = self.frame.turned_back(w, jump, kick, dt)
-            for a in ti.static(range(g.axes)):
-                jump[a] = back[a]
+            hold = self.frame.hold
+            y, z = ti.cast(jump[0], hold.exact), ti.cast(jump[1], hold.exact)
+            led = hold.led(w, y, z, ti.cast(kick, hold.exact), ti.cast(dt, hold.exact))
+            jump[0], jump[1] = ti.cast(led[0], g.real), ti.cast(led[1], g.real)
         for a in ti.static(range(g.axes)):
             g.velocity[a][w, i] = g.velocity[a][w, i] + jump[a]
             self.former[a][w, i] = self.lift[a][w, i]

@@ -179,13 +179,19 @@ class OnBody:
         return ti.Vector([cos * y + sin * z, cos * z - sin * y])
 
     @ti.func
-    def before_turn(self, w, kick, dt):
-        """The body's turn (rad) at the time of its cargo's velocities, as a step of its own of dt (s) begins."""
-        lag = (kick - 0.5 * dt) / self.every
-        turn = self.bodies.place[2][w, self.body]
+    def led(self, w, y, z, kick, dt):
+        """By what the velocity of a grain in the body's axes changes as that over the earth does by (y, z) m/s.
+
+        A step of the body of dt (s) begins, and the velocities are those of some time before: v − τ ω × v changes, with
+        the arm that the grain had then.
+        """
+        lag, turn = (kick - 0.5 * dt) / self.every, self.bodies.place[2][w, self.body]
+        back = ti.cast(0.0, self.exact)
         if self.bodies.state[w, self.body] != HELD:
-            turn -= lag * self.bodies.velocity[2][w, self.body]
-        return turn
+            back = lag * self.bodies.velocity[2][w, self.body]
+        found = turned(y, z, back - turn)
+        less = 1.0 / (1.0 + back * back)
+        return ti.Vector([less * (found[0] - back * found[1]), less * (found[1] + back * found[0])])
 
     @ti.func
     def note_velocity(self, w, first: ti.template(), turn, u: ti.template()):
