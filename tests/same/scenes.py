@@ -95,4 +95,26 @@ SCENES = {
         "run.repeats": 1,
         "run.duration": "0.2 s",
     },
+    "soaked": {"water": {"depth": "20 mm", "spacing": "6 mm"}, "motion.roll.amplitude": "8 deg", "run.repeats": 1},
+    "floating": {  # a hull with grains in her hold, which floods beside it
+        "motion.roll": OFF,
+        "tank": {"width": "240 mm", "height": "110 mm", "thickness": "3 mm"},
+        "water": {"depth": "60 mm", "spacing": "3 mm"},
+        "parts.barge": {
+            "closed": True,
+            "wall": "4 mm",
+            "density": "1200 kg/m^3",
+            "points": [["-45 mm", "40 mm"], ["45 mm", "40 mm"], ["45 mm", "100 mm"], ["-45 mm", "100 mm"]],
+            "rooms": {
+                "hold": {"points": [["-15 mm", "44 mm"], ["41 mm", "44 mm"], ["41 mm", "96 mm"], ["-15 mm", "96 mm"]]},
+                "wing": {
+                    "points": [["-41 mm", "44 mm"], ["-19 mm", "44 mm"], ["-19 mm", "96 mm"], ["-41 mm", "96 mm"]]
+                },
+            },
+            "openings": {"hole": {"points": [["-36 mm", "42 mm"], ["-24 mm", "42 mm"]], "opens": "0.02 s"}},
+        },
+        "grains.room": "barge.hold",
+        "grains.count": 40,
+        "run.repeats": 1,
+    },
 }
