@@ -63,7 +63,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         precision=preset.run.precision,
         schedule=preset.run.schedule,
     )
-    if scene.mixture:
+    if preset.wet:
         scene.matters = scene.holding(soaked_by(preset, scene)).matters
     check_laden(preset, scene)
     if preset.grains:

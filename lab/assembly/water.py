@@ -210,11 +210,11 @@ def particles(scene: Scene) -> int:
 
 def mixture_of(preset: Preset) -> Mixture | None:
     """How the grains of a preset and the water of their tank act on each other; None where they do not meet."""
-    if not preset.wet:
+    if not (preset.wet or preset.soaks):
         return None
     finer = preset.mean_diameter / preset.grains.true_size if preset.grains.true_size else 1.0
     drag = preset.water.drag or Mixture.drag
-    level = None if share_of(preset.water) else float(bounds(preset)[1])
+    level = None if share_of(preset.water) or preset.soaks else float(bounds(preset)[1])
     given = preset.water.kinematic_viscosity or VISCOSITY, finer, level, preset.water.saturation
     return Mixture(drag, *given)
 

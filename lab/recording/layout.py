@@ -103,7 +103,7 @@ def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quan
     more = bool(preset.axle), bool(preset.bodies), bool(preset.inflow), preset.axes > PLANE
     whole = series_of(afloat, matters, *more)
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
-    tables = {"series": series, "frames": frames_of(afloat and steered, matters, preset.wet)}
+    tables = {"series": series, "frames": frames_of(afloat and steered, matters, preset.wet or preset.soaks)}
     if preset.axes > PLANE:
         tables = {name: tuple(one.within(preset.axes) for one in those) for name, those in tables.items()}
     return tables | ({"steering": STEERING} if steered else {})

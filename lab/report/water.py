@@ -207,7 +207,7 @@ def cautions(recording: Recording) -> Iterator[str]:
     exchanged = sum(np.abs(series[f"water_{name}"]) for name in ("work", "viscous", "diffusive"))
     exchanged = (exchanged + series["water_kinetic"]).max()
     missing = np.abs(residual(recording)).max()
-    if recording.preset.wet:
+    if recording.preset.wet or recording.preset.soaks:
         yield "What water and grains exchange is not in the water's account of its energy."
     elif missing > UNEXPLAINED * exchanged:
         yield f"The water's account lacks {100.0 * missing / exchanged:.2g} % of the energy exchanged."

@@ -13,7 +13,7 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Body, Free, Hull, Opening
 from solvers.tank.tank import Tank
-from tests.oracles.floating import rectangle
+from tests.oracles.floating import DENSITY, rectangle
 from tests.oracles.water import GRAVITY, box, lattice
 
 WIDE, HIGH, WALL, DEEP, LEVEL = 0.08, 0.16, 0.008, 0.104, 0.16  # m: the room, the wall, water in it and round the hull
@@ -33,37 +33,39 @@ def grains(count: int) -> Grains:
 
 
 def in_hull(
-    release: float = 0.0, opens: float = 0.0, shift: tuple[float, float] = (0.0, 0.0), places: np.ndarray = PLACES
+    release: float = 0.0,
+    opens: float = 0.0,
+    shift: tuple[float, float] = (0.0, 0.0),
+    deep: float = DEEP,
+    places: np.ndarray = PLACES,
 ) -> tuple[Scene, np.ndarray]:
-    """A scene, all of it `shift` (m) away, and the places (1, n, 2) m of grains in water in a hull.
+    """A scene, all of it `shift` (m) away, and the places (1, n, 2) m of grains in water `deep` (m) in a hull.
 
-    She floats about as deep as she is drawn. In her floor is a hole that opens (s).
+    With the usual depth she floats as deep as she is drawn. In her floor is a hole that `opens` (s).
     """
-    shift = np.array(shift)
-    low, high = np.array([-0.5 * WIDE, KEEL + WALL]), np.array([0.5 * WIDE, KEEL + WALL + HIGH])
-    outer = rectangle(low - WALL, high + WALL)
-    floor = KEEL + 0.5 * WALL
-    hole = Opening(tuple(map(tuple, shift + [(-0.5 * HOLE, floor), (0.5 * HOLE, floor)])), opens)
-    room = rectangle(low, high)
-    hull = Hull(WALL, (moved(room, shift),), (hole,))
-    draught, across = LEVEL - KEEL, WIDE + 2.0 * WALL
-    mass = 1000.0 * SIZE * (across * draught - WIDE * DEEP)
-    free = Free(mass, mass * (across**2 + HIGH**2) / 12.0, tuple(shift + [0.0, KEEL + 0.06]), release)
-    body = Body(moved(outer, shift), closed=True, free=free, hull=hull)
-    solid = replace(body, hull=None, free=None, points=outer)
-    round_her = lattice(0.32, LEVEL, SPACING, SOUND)
-    round_her = round_her[:, clear_of(round_her["position"][0], (solid,), SPACING)]
-    inside = lattice(WIDE, DEEP, SPACING, SOUND)
-    inside["position"][..., 1] += KEEL + WALL
-    drops = np.concatenate([round_her, inside], axis=1)
+    low, high = (-0.5 * WIDE, KEEL + WALL), (0.5 * WIDE, KEEL + WALL + HIGH)
+    room, outer = (moved(rectangle(np.subtract(low, wall), np.add(high, wall)), shift) for wall in (0.0, WALL))
+    middle = KEEL + 0.5 * WALL
+    hole = Opening(moved(((-0.5 * HOLE, middle), (0.5 * HOLE, middle)), shift), opens)
+    across = WIDE + 2.0 * WALL
+    mass = DENSITY * SIZE * (across * (LEVEL - KEEL) - WIDE * DEEP)
+    [centre] = moved(((0.0, KEEL + 0.06),), shift)
+    free = Free(mass, mass * (across**2 + HIGH**2) / 12.0, centre, release)
+    body = Body(outer, closed=True, free=free, hull=Hull(WALL, (room,), (hole,)))
+    drops = lattice(4.0 * WIDE, LEVEL, SPACING, SOUND)
     drops["position"] += shift
-    places = places + shift + [0.0, KEEL + WALL]
-    tank = np.add(box(0.32, 0.32), shift)
+    drops = drops[:, clear_of(drops["position"][0], (body,), SPACING)]
+    if deep:
+        inside = lattice(WIDE, deep, SPACING, SOUND)
+        inside["position"] += np.add(shift, (0.0, KEEL + WALL))
+        drops = np.concatenate([drops, inside], axis=1)
     scene = Scene(
-        tank, (grains(places.shape[1]), Fluid(water(), drops, in_tanks=(drops.shape[1], 0))), mixture=Mixture(),
-        thickness=SIZE, gravity=GRAVITY, parts=(body,), more_tanks=(Tank(np.array(moved(room, shift)), SIZE, aboard=0),),
+        np.add(box(4.0 * WIDE, 4.0 * WIDE), shift),
+        (grains(places.shape[1]), Fluid(water(), drops, in_tanks=(drops.shape[1], 0))),
+        mixture=Mixture(), thickness=SIZE, gravity=GRAVITY, parts=(body,),
+        more_tanks=(Tank(np.array(room), SIZE, aboard=0),),
     )  # fmt: skip
-    return paced(scene), places
+    return paced(scene), places + np.add(shift, (0.0, KEEL + WALL))
 
 
 def in_tank(places: np.ndarray = PLACES) -> tuple[Scene, np.ndarray]:
@@ -82,9 +84,9 @@ def paced(scene: Scene) -> Scene:
     return scene.holding(replace(scene.fluid, substeps=PACE), step=step)
 
 
-def moved(points: tuple, shift: np.ndarray) -> tuple:
-    """Corners, `shift` (m) away."""
-    return tuple(tuple(point) for point in (np.array(points) + shift).tolist())
+def moved(points: tuple, shift: tuple[float, float]) -> tuple:
+    """Points, `shift` (m) away."""
+    return tuple(tuple(point) for point in np.add(points, shift).tolist())
 
 
 def run_of(scene: Scene, places: np.ndarray) -> Simulation:

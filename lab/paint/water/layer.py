@@ -96,7 +96,7 @@ class WaterLayer:
     def paint_table(self, picture: np.ndarray, camera: Camera, bed: Bed, frame: int) -> None:
         """Paint the surface of water between grains, over these, as a line."""
         pool = bed.footage.water
-        if not (pool and pool.porous) or self._discs:
+        if not (pool and pool.tabled) or self._discs:
             return
         for basin in bed.footage.basins:
             place = bed.water_position(frame)

@@ -25,6 +25,7 @@ class Pool:
     density: float = 1000.0
     gravity: float = 9.81
     axes: int = 2
+    tabled: bool = False
 
     @classmethod
     def of(cls, preset: Preset, volume: np.ndarray, air: np.ndarray) -> "Pool | None":
@@ -35,7 +36,8 @@ class Pool:
         of_gauges = dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True))
         level = float(preset.pools[0].level) if preset.water.depth is not None else None
         weight = level, preset.water.density, preset.run.gravity, preset.axes
-        return cls(volume, *of_gauges, air, preset.water.flow is not None, preset.wet, *weight)
+        porous = preset.wet or preset.soaks
+        return cls(volume, *of_gauges, air, preset.water.flow is not None, porous, *weight, preset.wet)
 
     @property
     def spacing(self) -> float:

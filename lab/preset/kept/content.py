@@ -35,6 +35,7 @@ class Content:
     axes: int
     faces: tuple[str, ...]
     wet: bool
+    soaks: bool
 
 
 def parted(gauges: Mapping[str, G]) -> tuple[dict[str, G], ...]:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from lab.preset import formats
 from lab.preset.fields import Table, Taken, defaults_of, join, taken_of
 from lab.preset.kept.content import FIRST, INSIDE, KINDS_OF_GAUGES, MATTERS, Content, Gauge
+from lab.preset.kept.openings import leads_into
 from lab.preset.kept.read import keys
 from solvers.machine.quantity import PLANE, SPACE
 from solvers.tank.solids.solid import ENDS, MESH, edges_named
@@ -37,7 +38,18 @@ def content(table: object) -> Content:
     wet = has["water"] and has["grains"] and poured and grains.get("room") is None
     own = has["material"], has["ship"], has["axle"], gauges
     room = bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ()))
-    return Content(matters, *own, *room, repeats, axes, faces, wet)
+    soaks = has["water"] and has["grains"] and _soaks(kept.get("parts", {}), grains.get("room"))
+    return Content(matters, *own, *room, repeats, axes, faces, wet, soaks)
+
+
+def _soaks(parts: Mapping, name: str | None) -> bool:
+    """Whether an opening leads into the room of a hull that the grains are in, if they are in one."""
+    hull, _, room = (name or "").rpartition(".")
+    part = parts.get(hull) or {}
+    openings = [one["points"] for one in (part.get("openings") or {}).values()]
+    if not part.get("rooms"):
+        return bool(openings)
+    return any(leads_into(points, part["wall"], part["rooms"][room]["points"]) for points in openings)
 
 
 def _check(taken: Taken, value: object, key: str) -> None:

@@ -19,7 +19,7 @@ Rows = list[tuple[str, str]]
 
 def described(preset: Preset, scene: Scene) -> Rows:
     """The state of a wet bed, each row a name and a text; none of dry grains or of water alone."""
-    wet = state(preset) if scene.mixture else None
+    wet = state(preset) if preset.wet else None
     if wet is None:
         return []
     level = f"{show(wet.free, 'm')} of free water on a bed of {show(wet.bed, 'm')}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.kept.content import INSIDE
+from lab.preset.kept.openings import beside
 from lab.preset.outline import Point, simple_polygon
 from lab.preset.sections.tank import Tank as PresetTank
 from lab.preset.units import show
@@ -119,6 +120,11 @@ class WithBodies:
             for side in sides_of(part, one)
         )
         return {f"{name}.{side}" for name, side in sides if side}
+
+    @property
+    def soaks(self) -> bool:
+        """Whether water may enter the room of a hull that the grains are in."""
+        return self.grains is not None and self.grains.room is not None and self.grains.room in self.open_rooms
 
     @property
     def openings(self) -> tuple[str, ...]:
@@ -248,12 +254,10 @@ def _faults_of_opening(part, name: str, opening: Opening) -> Iterator[tuple[str,
 
 def sides_of(part, opening: Opening) -> list[str | None]:
     """What an opening joins: the names of rooms, None for the water outside, `IN_WALL` where it ends in a wall."""
-    rooms, ends = rooms_of(part), np.array(opening.points)
+    rooms = rooms_of(part)
     shapes = [np.array(simple_polygon(part.points)), *rooms.values()]
-    along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
-    middle, across = ends.mean(axis=0), part.wall * np.array([-along[1], along[0]])
     found = []
-    for point in (middle + across, middle - across):
+    for point in beside(opening.points, part.wall):
         inside, *within = (Tank(shape, 1.0).holds(point[None])[0] for shape in shapes)
         room = next((name for name, there in zip(rooms, within, strict=True) if there), IN_WALL)
         found.append(room if inside else None)

@@ -4,7 +4,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.sections.parts import PartGroup
-from lab.preset.sections.water.bodies import depths_of, draught, sides_of
+from lab.preset.sections.water.bodies import depths_of, draught
 from lab.preset.sections.water.liquid import Wet
 from lab.preset.units import show
 
@@ -61,12 +61,9 @@ def check_hold(preset: Wet) -> None:
     part = preset.parts[name]
     if not part.floats:
         raise LabError(f"grains.room: {name} does not float; give parts.{name}.density, or the grains a [tank].")
-    leads = [hole for hole, opening in part.openings.items() if room in sides_of(part, opening)]
-    if leads:
-        remedy = "let it lead to another room: water among grains is not computed yet"
-        raise LabError(f"parts.{name}.openings.{leads[0]}: leads into the room of the grains; {remedy}.")
     if depths_of(part)[room] > 0.0:
-        raise LabError(f"parts.{name}.rooms.{room}.depth: grains in water are not computed yet; leave it out.")
+        remedy = "leave it out, and let water in by an opening"
+        raise LabError(f"parts.{name}.rooms.{room}.depth: grains in a hull are dry at first; {remedy}.")
     if preset.tank.roughness is not None:
         raise LabError("tank.roughness: lines the tank, and the grains are in a hull; leave it out.")
     if preset.motion.parts:

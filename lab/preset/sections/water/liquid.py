@@ -50,6 +50,7 @@ class Wet(Tanked, Protocol):
     liquid: given.Water
     pools: tuple[Pool, ...]
     wet: bool
+    soaks: bool
 
 
 def distance_of_walls(preset: Wet) -> float | None:
@@ -75,7 +76,7 @@ def liquid(preset: Wet) -> given.Water:
         diffusion=water.diffusion or scheme.diffusion,
         delta=scheme.delta if water.delta is None else water.delta,
         viscosity=water.viscosity or scheme.viscosity,
-        alpha=water.alpha if water.alpha is not None else max(scheme.alpha, STILL) if preset.wet else scheme.alpha,
+        alpha=water.alpha if water.alpha is not None else _still(preset, scheme),
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
         gap=(distance_of_walls(preset) or 0.0) if water.between_walls else 0.0,
@@ -109,6 +110,11 @@ def smoothing(preset: Wet, scheme: Scheme) -> float:
         return preset.water.smoothing
     found = (preset.air and scheme.smoothing_with_air) or scheme.smoothing
     return min(found, IN_SPACE) if preset.tank.solid else found
+
+
+def _still(preset: Wet, scheme: Scheme) -> float:
+    """The artificial viscosity of a scheme; between grains at least as much as lets a bed rest."""
+    return max(scheme.alpha, STILL) if preset.wet or preset.soaks else scheme.alpha
 
 
 def _zone(preset: Wet, zone: DampingZone) -> given.DampingZone:

@@ -27,6 +27,7 @@ class Whole(liquid.Wet, Protocol):
     contact: Contact
     tanks: dict
     axle: object | None
+    soaks: bool
 
 
 def is_wet(preset: Whole) -> bool:
@@ -41,6 +42,10 @@ def is_wet(preset: Whole) -> bool:
 def check_wet(preset: Whole) -> None:
     """Raise LabError for wet cargo that cannot be, and for keys of it where there is none."""
     water, grains = preset.water, preset.grains
+    if preset.soaks:
+        _check_company(preset, preset.grains.room)
+        _check_sizes(preset)
+        return
     if not is_wet(preset):
         if grains is not None and grains.true_size is not None:
             raise LabError("grains.true_size: goes with water in the grains' tank; add [water], or leave it out.")
@@ -54,6 +59,12 @@ def check_wet(preset: Whole) -> None:
         if getattr(water, name) is not None:
             remedy = "give water.depth, moisture or saturation"
             raise LabError(f"water.{name}: water between grains starts level and at rest; {remedy}.")
+    _check_sizes(preset)
+
+
+def _check_sizes(preset: Whole) -> None:
+    """Raise LabError for particles of water, a slab or a true size that do not suit the grains."""
+    water, grains = preset.water, preset.grains
     asked = liquid.spacing(preset) if water.spacing == "auto" else water.spacing
     if liquid.spacing(preset) < ROUNDED * COARSEST * preset.mean_diameter:
         least = show(COARSEST * preset.mean_diameter, "m")
@@ -74,8 +85,8 @@ def check_wet(preset: Whole) -> None:
         )
 
 
-def _check_company(preset: Whole) -> None:
-    """Raise LabError for what cannot be together with grains in water."""
+def _check_company(preset: Whole, room: str | None = None) -> None:
+    """Raise LabError for what cannot be together with grains in water, in the tank or in a `room` of a hull."""
     beside = {
         "ship.bare": (preset.ship is not None and preset.ship.bare, "in a ship whose centre is told without the water"),
         "axle": (preset.axle is not None, "in a tank on an axle"),
@@ -93,7 +104,7 @@ def _check_company(preset: Whole) -> None:
     if preset.contact.cohesion != "none":
         beside["contact.cohesion"] = True, f"with bridges (this water fills {_filled(preset)} of the pores)"
     for name, part in preset.parts.items():
-        if not part.sieve or part.floats:
+        if (not part.sieve or part.floats) if room is None else (part.tank == room and not part.sieve):
             raise LabError(
                 f"parts.{name}: grains in water are not computed round what holds water back; set parts.{name}.sieve = "
                 "true for a plate that holds grains alone, or leave it out."
@@ -105,5 +116,5 @@ def _check_company(preset: Whole) -> None:
 
 def _filled(preset: Whole) -> str:
     """How much of the bed's pores is filled, in words."""
-    wet = state(preset)
+    wet = None if preset.soaks else state(preset)
     return f"{100.0 * wet.saturation:.3g} %" if wet else "some"
