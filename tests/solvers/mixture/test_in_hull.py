@@ -12,7 +12,7 @@ from solvers.machine.errors import Unavailable
 from solvers.simulation import Simulation
 from tests.oracles.aboard import masses, together
 from tests.oracles.water import GRAVITY
-from tests.oracles.wet_hull import NEVER, PACE, WALL, WIDE, in_hull, in_tank, run_of
+from tests.oracles.wet_hull import NEVER, PACE, PLACES, WALL, WIDE, in_hull, in_tank, run_of
 
 RATE = 2.0  # rad/s
 
@@ -20,7 +20,7 @@ RATE = 2.0  # rad/s
 @pytest.fixture(scope="module")
 def run() -> Iterator[Simulation]:
     """A hull that floats with grains that sink in the water in her, and a hole through which more flows in."""
-    made = run_of(*in_hull())
+    made = run_of(*in_hull(places=PLACES - [0.0, 0.06]))
     made.advance(made.whole(round(0.05 / made.dt)))
     yield made
     made.close()
@@ -49,7 +49,7 @@ def test_what_water_and_grains_and_hull_gain_together_is_their_weight_less_what_
     mass = run.scene.thickness * run.water.particles.read(run.water.particles.mass)[0][0].sum()
     weight, step = GRAVITY * (mass + together(run)["mass"]), run.exchange_interval * run.dt
     begun = run.observe()["room_water"][0, 0]
-    for _ in range(1500):
+    for _ in range(600):
         run.advance(run.exchange_interval)
         of_water, of_grains = (
             np.stack([field.to_numpy()[0, :3] for field in load.instant[:2]], axis=-1)
@@ -102,10 +102,16 @@ def test_grains_sink_in_a_hull_as_in_a_tank_at_rest():
 
 @pytest.mark.slow
 def test_a_scene_that_is_elsewhere_does_the_same():
-    """To what rounding of places makes of it in 0.1 s."""
-    (here, speed), (there, of_there) = (fallen(in_hull(shift=shift), 0.1) for shift in ((0.0, 0.0), (1.7, -0.4)))
-    np.testing.assert_allclose(there, here, atol=1e-9 * SIZE)
-    np.testing.assert_allclose(of_there, speed, atol=1e-9)
+    """To what rounding makes of it in 0.1 s, with the hole closed: about an open one a lattice has ties.
+
+    Places that are off by 4e-16 m at 1.7 m make the pressure off by ρ c0² 5e-14 = 5e-9 Pa, and the water, 8 mm apart,
+    by 3e-12 m after 0.1 s; here it may be a thousand times as much.
+    """
+    (here, speed), (there, of_there) = (
+        fallen(in_hull(shift=shift, opens=NEVER), 0.1) for shift in ((0.0, 0.0), (1.7, -0.4))
+    )
+    np.testing.assert_allclose(there, here, atol=3e-9)
+    np.testing.assert_allclose(of_there, speed, atol=6e-8)
 
 
 @pytest.mark.slow
