@@ -124,16 +124,61 @@ def test_a_hull_that_her_cargo_sinks_is_refused_by_her_weight_with_it():
         build(resolve(preset))
 
 
+DAMP = {"humidity": "70 %", "surface_tension": "0.072 N/m", "contact_angle": "0 deg", "asperities": "1 nm"}
+DOOR = {"hole": {"points": [["0 m", "1 m"], ["0 m", "1.2 m"]]}}
+
+
+def soaked(**changes) -> dict:
+    """As `laden`, with an opening into the room of the grains, and changes of the tables of the preset."""
+    preset = laden(diameter="20 mm", depth="200 mm")
+    preset["parts"]["box"]["openings"] = DOOR
+    return preset | changes
+
+
+def test_an_opening_into_the_room_of_the_grains_makes_a_mixture():
+    """Without it there is none, and the water stays where it was."""
+    dry, wet = resolve(laden()), resolve(soaked())
+    assert wet.soaks and not wet.wet and not dry.soaks
+    scene, _ = build(wet)
+    assert scene.mixture.level is None and scene.fluid.water.alpha > build(dry)[0].fluid.water.alpha
+    assert build(dry)[0].mixture is None and scene.fills == build(dry)[0].fills
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "remedy"),
+    [
+        (
+            {"contact": {"cohesion": "humid"}, "material": laden()["material"] | DAMP},
+            "contact.cohesion",
+            "leave this out",
+        ),
+        ({"air": {}}, "air", "leave this out"),
+        ({"shapes": {"rice": {"cargo": "rice"}}}, "shapes", "leave this out"),
+    ],
+)
+def test_what_cannot_be_with_wet_grains_in_a_hull_is_refused(changes, key, remedy):
+    with pytest.raises(LabError) as caught:
+        resolve(soaked(**changes))
+    told = str(caught.value)
+    assert told.startswith(key) and remedy in told and "\n" not in told
+
+
+def test_a_shelf_among_wet_grains_is_a_sieve():
+    preset = soaked()
+    shelf = {"tank": "box.port", "points": [["-300 mm", "1 m"], ["-200 mm", "1 m"]]}
+    preset["parts"]["shelf"] = shelf
+    with pytest.raises(LabError, match=r"^parts.shelf: .* set parts.shelf.sieve = true"):
+        resolve(preset)
+    shelf["sieve"] = True
+    assert resolve(preset).soaks
+
+
 @pytest.mark.parametrize(
     ("change", "key", "remedy"),
     [
         (lambda p: p["grains"].update(room="box.hold"), "grains.room", "the rooms are box.port, box.starboard"),
         (lambda p: p["parts"]["box"].pop("density"), "grains.room", "give parts.box.density"),
-        (
-            lambda p: p["parts"]["box"].update(openings={"hole": {"points": [["0 m", "1 m"], ["0 m", "1.2 m"]]}}),
-            "parts.box.openings.hole",
-            "let it lead to another room",
-        ),
+        (lambda p: p["parts"]["box"].update(openings=DOOR), "water.spacing", "take at least 80 mm"),
         (lambda p: p["parts"]["box"]["rooms"]["port"].update(depth="0.1 m"), "parts.box.rooms.port.depth", "leave it"),
         (lambda p: p.update(motion={"roll": {"amplitude": "1 deg", "frequency": "1 Hz"}}), "grains.room", "at rest"),
         (lambda p: p["run"].update(integrator="gear"), "run.integrator", "leave it out"),

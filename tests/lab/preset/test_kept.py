@@ -92,7 +92,13 @@ def test_a_source_that_is_another_is_noticed(monkeypatch, tmp_path, source):
     assert not kept.is_current.__wrapped__()
 
 
-@pytest.mark.parametrize("name", ["tilting/quick", "sloshing/quick", "ship/barge-roll", "validation/ciemito-flume"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("tilting/quick", "sloshing/quick", "ship/barge-roll", "validation/ciemito-flume"),
+        *("wet/sand", "flooding/coal-barge", "flooding/grain-barge"),
+    ],
+)
 def test_what_a_recording_is_laid_out_by_is_read_without_the_schema(name, monkeypatch):
     preset = load(name).resolved
     table = to_table(preset)
@@ -100,6 +106,7 @@ def test_what_a_recording_is_laid_out_by_is_read_without_the_schema(name, monkey
     found = content(table)
     assert found.matters == preset.matters and found.repeats == preset.run.repeats
     assert (found.ship, found.axle) == (bool(preset.ship), bool(preset.axle))
+    assert (found.wet, found.soaks) == (preset.wet, preset.soaks)
     assert [list(one) for one in parted(found.gauges)] == [list(one) for one in parted(preset.gauges)]
     assert found.material == (preset.material is not None) and set(found.matters) <= set(MATTERS)
 
