@@ -85,7 +85,10 @@ class Contacts:
             fn, ft, rolling = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, turning, way, dt)
             roll = self.laws.resisted(PAIR, pairs, u, block, approach, fn, turned, normal, rolling, dt)
             if ti.static(self.laws.cohesive):
-                fn = fn - self.laws.cohesive_force(pairs, u, block, approach, rate, dt)
+                pull = self.laws.cohesive_force(pairs, u, block, approach, rate, dt)
+                if ti.static(g.soaks):
+                    pull = pull * gathered(g.dry, i, pairs.lanes) * gathered(g.dry, j, pairs.lanes)
+                fn = fn - pull
             force, arm, back = tangent.force(normal, fn, ft), tangent.arm(normal, ft), [minus(roll[k]) for k in turns]
             turn_i, turn_j = tangent.torque(lever_i, arm, roll), tangent.torque(lever_j, arm, back)
             self.push_both(g, pairs, u, block, i, force, [turn_i, turn_j])
@@ -188,7 +191,10 @@ class Contacts:
             spun, facing = [ti.Vector([one]) for one in relative], [ti.Vector([one]) for one in normal]
             roll = self.laws.resisted(WALL, contacts, u, p, met[0], fn, spun, facing, against, dt)
             if ti.static(self.laws.cohesive):
-                fn = fn - self.laws.cohesive_force(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
+                pull = self.laws.cohesive_force(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
+                if ti.static(g.soaks):
+                    pull = pull * g.dry[w, i]
+                fn = fn - pull
             shear = [ft[k][0] for k in turns]
             torque = tangent.torque(lever, tangent.arm(normal, shear), [roll[k][0] for k in turns])
             self.push_off(g, w, i, u, feature, tangent.force(normal, fn[0], shear), torque, load)
@@ -251,6 +257,8 @@ class Contacts:
                 energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
             if ti.static(self.laws.cohesive):
                 share = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                if ti.static(g.soaks):
+                    share *= g.dry[w, i] * g.dry[w, j]
                 energy += share * self.laws.bridge_energy(pairs, u, p, overlap)
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
@@ -264,7 +272,10 @@ class Contacts:
             if ti.static(self.laws.cohesive):  # noqa: SIM102 (compiled only for wet grains)
                 if gap[0] > 0.0:
                     approach = ti.cast(g.radius[w, i] - gap[0], g.real)
-                    energy += self.laws.bridge_energy(contacts, u, p, approach)
+                    share = ti.cast(1.0, g.real)
+                    if ti.static(g.soaks):
+                        share = g.dry[w, i]
+                    energy += share * self.laws.bridge_energy(contacts, u, p, approach)
         return ti.Vector([touching, deepest, energy])
 
 

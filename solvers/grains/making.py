@@ -37,7 +37,8 @@ def make_grains(scene, context: Context) -> GrainMatter:
     laws.wide = context.vectors if laws.fit and given.bears_vectors and not units.single else 0
     moduli = np.array([[between.young_modulus for between in world] for world in given.interfaces_of])
     discs = given.shapes is None
-    space = {"period": scene.solid.period if scene.solid else None}
+    soaks = scene.mixture is not None and laws.cohesive
+    space = {"period": scene.solid.period if scene.solid else None, "soaks": soaks}
     grains = GrainState(arrays, context.axes, *state, **space) if discs else ShapedState(arrays, given.shapes, *state)
     together = discs and units.whole
     early = 0.5 * context.largest_multiple * scene.time_step() * scene.credible_speed()

@@ -16,6 +16,8 @@ class GrainState:
     `place` (m), `velocity` and `now` (m/s) and `force` (N) are lists with an array for each of the `axes`, `angle`,
     `spin` and `spin_now` (rad, rad/s) and `torque` (N m) for each of the `turns`, the axes about which grains turn.
 
+    Where liquid bridges may drown (`soaks`), `dry` is 1 for a grain that no free water reaches, 0 for a soaked one.
+
     With a `period` (m) space repeats itself along the last axis (`nearest`, `fold`).
 
     A disc has the mass and inertia of the sphere it stands for. `velocity` and `spin` are what the integrator keeps;
@@ -38,6 +40,7 @@ class GrainState:
         kind: np.ndarray | None = None,
         spread: np.ndarray | float = 1.0,
         period: float | None = None,
+        soaks: bool = False,
     ):
         self.axes, self.turns, self.fixed = axes, turns(axes), fixed
         self.worlds, self.mobile = radius.shape
@@ -65,6 +68,9 @@ class GrainState:
         self.inverse_inertia = own.holding("inverse_inertia", inverse_inertia, each, kept=True)
         if kind is not None:
             self.kind = own.holding("kind", self._filled(kind, 0.0, 0.0), each, ti.i32, kept=True)
+        self.soaks = soaks
+        if soaks:
+            self.dry = own.holding("dry", np.ones((self.worlds, self.stride)), each, kept=True)
         if may_leave:
             self.present = own.holding("present", np.ones((self.worlds, self.stride)), each, kept=True)
             self.spilled = own.holding("spilled", np.zeros((self.worlds, self.stride)), each, kept=True)

@@ -48,7 +48,9 @@ class Exchange(Pull):
     of a step grains are thus ahead of the water by ½ T of their lift.
 
     The drag of a grain counts whole where the nearest particle of water is within a spacing of the bed, Δx/√ε, and not
-    at all from 1.5 on.
+    at all from 1.5 on. Liquid bridges pull by the rest, (1 − s_i)(1 − s_j) of both grains' shares s in the drag: none
+    in full pores, whole where no free water is near. What is lost of a bridge's energy as it drowns goes nowhere, and
+    comes from nowhere as the water leaves.
 
     Limits: within 2 h of a plane wall the lift of a single grain is off, by −30 % at the wall and 7 % at h from it (the
     kernel's integral over W/Γ), their sum is not. No added mass, no lift across the flow, no lubrication, no friction
@@ -92,7 +94,7 @@ class Exchange(Pull):
 
         Grains in a hull are dry at first, and the water is where the scene has it.
         """
-        for field in self.former:
+        for field in (*self.former, *([self.grains.dry] if self.grains.soaks else [])):
             field.fill(0.0)
         return self.scene.fluid.particles if self.frame.aboard else self.laying.particles(position)
 
@@ -153,6 +155,8 @@ class Exchange(Pull):
             porosity /= seen
             away = ti.sqrt(near * porosity) / c.get("spacing")
             wet = ti.max(0.0, ti.min(1.0, (FAR - away) / (FAR - NEAR)))
+        if ti.static(self.grains.soaks):
+            self.grains.dry[w, i] = 1.0 - wet
         self.share[w, i], self.partner[w, i], self.held[w, i], self.gained[w, i] = zero, zero, zero, zero
         for a in ti.static(range(p.axes)):
             self.impulse[a][w, i], self.lift[a][w, i], self.rise[a][w, i] = zero, zero, zero

@@ -102,7 +102,7 @@ def _check_company(preset: Whole, room: str | None = None) -> None:
         "water.shifting": (preset.water.shifting != "none", "with shifted particles"),
     }
     if preset.contact.cohesion != "none":
-        beside["contact.cohesion"] = True, f"with bridges (this water fills {_filled(preset)} of the pores)"
+        _check_bridges(preset, room)
     for name, part in preset.parts.items():
         if (not part.sieve or part.floats) if room is None else (part.tank == room and not part.sieve):
             raise LabError(
@@ -114,7 +114,12 @@ def _check_company(preset: Whole, room: str | None = None) -> None:
             raise LabError(f"{key}: grains in water are not computed {what} yet; leave this out, or the water.")
 
 
-def _filled(preset: Whole) -> str:
-    """How much of the bed's pores is filled, in words."""
-    wet = None if preset.soaks else state(preset)
-    return f"{100.0 * wet.saturation:.3g} %" if wet else "some"
+def _check_bridges(preset: Whole, room: str | None) -> None:
+    """Raise LabError for liquid bridges in a bed that has none: its pores are full from the start on."""
+    wet = None if room else state(preset)
+    if wet and wet.saturation >= 1.0:
+        filled = f"{100.0 * wet.saturation:.3g} %"
+        raise LabError(
+            f"contact.cohesion: this water fills {filled} of the pores, so that no grain has bridges; leave this out, "
+            "or take less water."
+        )
