@@ -124,7 +124,6 @@ def test_a_hull_that_her_cargo_sinks_is_refused_by_her_weight_with_it():
         build(resolve(preset))
 
 
-DAMP = {"humidity": "70 %", "surface_tension": "0.072 N/m", "contact_angle": "0 deg", "asperities": "1 nm"}
 DOOR = {"hole": {"points": [["0 m", "1 m"], ["0 m", "1.2 m"]]}}
 
 
@@ -147,11 +146,6 @@ def test_an_opening_into_the_room_of_the_grains_makes_a_mixture():
 @pytest.mark.parametrize(
     ("changes", "key", "remedy"),
     [
-        (
-            {"contact": {"cohesion": "humid"}, "material": laden()["material"] | DAMP},
-            "contact.cohesion",
-            "leave this out",
-        ),
         ({"air": {}}, "air", "leave this out"),
         ({"shapes": {"rice": {"cargo": "rice"}}}, "shapes", "leave this out"),
     ],

@@ -46,7 +46,7 @@ NEW = {"water.moisture": False}  # of a preset that has one
         ),
         (
             {"contact.cohesion": "bridge", "material.bridge_volume": "0.01 mm^3"},
-            "contact.cohesion: grains in water are not computed with bridges (this water fills 238 % of the pores) yet",
+            "contact.cohesion: this water fills 238 % of the pores, so that no grain has bridges; leave this out",
         ),
         (
             {"water.depth": False, "water.moisture": "5 %"},
