@@ -17,7 +17,10 @@ from benchmarks.aside import Aside
 from benchmarks.water.cases import gentle
 from benchmarks.water.workers import Worker
 from lab.report.page import Page
-from solvers.fluid.state import LANES
+from solvers.fluid import state
+from solvers.machine.quantity import PLANE
+
+LANES = state.LANES[PLANE]
 
 # Operations of a listed neighbour and one lane, in each pass.
 COUNTS = {

@@ -60,7 +60,7 @@ class WaterMatter(Matter):
         fluid: Fluid = scene.fluid.softened
         self.scene, self.fluid, self.water = scene, fluid, (water := fluid.water)
         arrays, worlds, tank, count = context.arrays, context.worlds, scene.tanks[0], fluid.count
-        lanes = LANES if context.wide and not context.per_particle else 1
+        lanes = LANES[context.axes] if context.wide and not context.per_particle else 1
         self.wide = lanes > 1
         layers, along = layers_of(scene, water), 2.0 * scene.solid.half(tank.outline) if scene.solid else 0.0
         grid = grid_round(water, fluid.particles["position"], scene.tanks, context.walls.bounds, lanes, along)

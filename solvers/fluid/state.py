@@ -6,10 +6,13 @@ import taichi as ti
 from solvers.fluid.given import Air, Water
 from solvers.fluid.terms.end_walls import MODES
 from solvers.machine.memory import KINDS
+from solvers.machine.quantity import PLANE, SPACE
 from solvers.machine.state import Axis, State, roomy
 from solvers.space.axes import named
 
-LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
+# Particles in a block: in the plane two AVX2 registers, or one of AVX-512, of 32-bit numbers; in space one of AVX2, as
+# there are twice the sums, and a block of 16 sees a quarter more neighbours that are none of most of its lanes
+LANES = {PLANE: 16, SPACE: 8}
 SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
 ROOM = 16384  # lanes for which there is room at least: tanks up to there, all together, share compiled kernels
 BESIDE = 64.0  # lanes of walls for the root of those of water: four rows round a tank that is longer than it is high

@@ -29,7 +29,7 @@ def soaked(roll=0.0, more=0.0, porous=True):
     pose = np.array([[0.0, 0.0, roll]])
     made = MadeFootage(tank(), SPACING, [place], [np.zeros_like(place)], [pressure], pose=pose, **now)
     volume = np.full((1, len(place)), 0.9 * DEPTH * (POROSITY if porous else 1.0) / len(place))
-    made.water = replace(made.water, volume=volume, porous=porous, density=DENSITY, gravity=GRAVITY)
+    made.water = replace(made.water, volume=volume, porous=porous, tabled=porous, density=DENSITY, gravity=GRAVITY)
     made.porosity = [np.full(len(place), POROSITY)]
     return made
 

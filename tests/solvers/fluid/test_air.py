@@ -71,6 +71,7 @@ def test_a_gauge_that_sees_more_air_than_water_shows_the_air(pool):
     assert shown[0] > 0.5 * squeezed and shown[2] < 0.05 * squeezed
 
 
+@pytest.mark.slow
 def test_closed_air_follows_water_and_walls(pool):
     """Water flies at closed air and takes a fifth of it: the pressures of both sides follow p V^1.4 to 1 %."""
     made, long = scene(background=40.0), 0.5 * (HEIGHT - 0.08)

@@ -126,6 +126,7 @@ def over_earth(points: np.ndarray, time: float) -> np.ndarray:
     return np.stack([y, z, x], axis=-1) + np.array([0.0, MOVES[1].centre[0], MOVES[1].centre[1] + surge])
 
 
+@pytest.mark.slow
 def test_a_moving_tank_is_that_of_the_earth_s_axes(run):
     """Rolling, pitching and surging: places after two steps are those of double sums over the earth.
 
