@@ -187,13 +187,13 @@ class Simulation:
         One step of all matters builds the lists and sums the forces at its start; then it is undone, bit for bit.
         """
         rows, before = self._observe(), self.state()
-        start = [(field, field.to_numpy()) for matter in self.matters.values() for field in matter.fields()]
+        start = [(name, k, f.to_numpy()) for name, one in self.matters.items() for k, f in enumerate(one.fields())]
         of_contacts = [name for matter in self.matters.values() for name in matter.of_contacts]
         try:
             self.advance(self.exchange_interval)
             load = self._observe()
-            for field, values in start:
-                field.from_numpy(values)
+            for name, k, values in start:  # the arrays are others now, if lists had to grow
+                self.matters[name].fields()[k].from_numpy(values)
             self.steps -= self.exchange_interval
             touching = self._observe()
         finally:

@@ -50,10 +50,9 @@ class Lists:
         own = arrays.under("water.lists")
         self.periods = own.holding("periods", np.array(order.grid.periods), "axis", own.place)
         wraps = [(-1, 0, 1) if period else (0,) for period in order.grid.periods]
-        self.axes, self.bits = order.particles.axes, PLACES[order.particles.axes]
+        particles, self.axes, self.bits = order.particles, order.particles.axes, PLACES[order.particles.axes]
         self.images = tuple(sum(3**a * (step + 1) for a, step in enumerate(steps)) for steps in product(*wraps))
         self.wall_first = own.holding("wall_first", padded(walls, order.keys), "key", ti.i32)
-        particles = order.particles
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.fluid_blocks, max(particles.wall_blocks, 1)))
         crowd = room * self._crowd(order.grid.lanes, constants.smoothing, self.axes)
         few = 4 * particles.wall_blocks * particles.lanes // units.a_world + wet  # blocks beside walls
@@ -63,7 +62,8 @@ class Lists:
             slots,
         )  # an image stands in front
         self.near = Listing(arrays, units, "near", wet, crowd * wet, *ends)
-        self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), *ends)
+        beside = max(room * (8 * few + 64), crowd if self.axes > PLANE else 0)  # a corner sees mostly walls
+        self.beside = Listing(arrays, units, "beside", wet * self.pieces, beside, *ends)
         self.facing = Listing(arrays, units, "facing", dry, crowd * dry, *ends)
         self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
         self.displacement = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)

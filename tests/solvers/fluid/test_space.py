@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import taichi as ti
 
+from solvers.fluid.lists import neighbours
 from solvers.fluid.state import SPRAY
 from solvers.fluid.surface.void_indicator import PACKING, RAMP
 from solvers.machine import runtime
@@ -172,6 +173,20 @@ def test_a_slice_that_begins_alike_along_it_stays_so():
     np.testing.assert_allclose(slices[:, :, 2] - drops["position"][0].reshape(6, -1, 3)[:, :, 2], 0.0, atol=1e-9)
     np.testing.assert_allclose(slices[:, :, :2], np.broadcast_to(slices[:1, :, :2], slices[:, :, :2].shape), atol=1e-9)
     assert np.abs(slices[0, :, :2] - drops["position"][0].reshape(6, -1, 3)[0, :, :2]).max() > 0.01 * SPACING
+    run.close()
+
+
+@pytest.mark.slow
+def test_particles_that_move_one_by_one_see_the_weight_though_their_lists_must_grow(monkeypatch):
+    """The first look takes a step back and forth; where lists grow in it the arrays are others then."""
+    monkeypatch.setattr(neighbours, "CROWDED", 0.2)
+    run = Simulation(pool((6, 9, 6), 6, SPACING, schedule="per-grain"), threads=1, arch="cpu")
+    load = run.observe()["wall_force"][0]
+    mass = float(run.water.particles.mass.to_numpy().sum())
+    assert load[1] == pytest.approx(-GRAVITY * mass, rel=0.02)
+    run.advance(5)
+    assert run.room > 1  # else nothing had to grow
+    np.testing.assert_allclose(run.observe()["wall_force"][0, [0, 2]], 0.0, atol=1e-9 * GRAVITY * mass)
     run.close()
 
 
