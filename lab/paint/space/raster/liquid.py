@@ -68,7 +68,7 @@ def paint_liquid(
     key = np.array(KEY) / np.linalg.norm(KEY)
     light = np.array([*key, *TAKEN, deep, spacing])
     _shade(picture, picture.copy(), even, layers.depth, thick, light, camera.gaze.axes @ [0.0, 1.0, 0.0], found.lens)
-    np.minimum(layers.depth, even + 0.3 * spacing, out=layers.depth)  # edges that touch it are before it
+    np.minimum(layers.depth, even + 1.5 * spacing, out=layers.depth)  # edges that touch it are before it
 
 
 def _thickness(layers: Layers, camera: SpaceCamera, place: np.ndarray, spacing: float, across: float) -> np.ndarray:
@@ -83,7 +83,8 @@ def _thickness(layers: Layers, camera: SpaceCamera, place: np.ndarray, spacing: 
     volume = spacing**3 * (camera.focal / (COARSE * seen[inside, 2])) ** 2  # m, over a cell
     sums = np.bincount(rows[inside] * shape[1] + columns[inside], volume, shape[0] * shape[1]).reshape(shape)
     smooth = gaussian_filter(sums, max(0.7, 0.8 * across / COARSE))
-    return np.ascontiguousarray(np.kron(smooth, np.ones((COARSE, COARSE)))[:height, :width], dtype=np.float32)
+    fine = gaussian_filter(np.kron(smooth, np.ones((COARSE, COARSE))), 0.6 * COARSE)  # no cells are seen
+    return np.ascontiguousarray(fine[:height, :width], dtype=np.float32)
 
 
 @ti.kernel

@@ -65,7 +65,7 @@ def test_water_is_darker_the_thicker_it_is_and_ends_at_the_walls():
     left = int(view.pixels(np.array([[-0.5, 0.5, 0.5 * LONG]]))[0, 0])
     np.testing.assert_array_equal(picture[:, : left - 1], 200)
     glass = view.gaze.seen(np.array([[0.0, 0.3, 0.5 * LONG]]))[0, 2]
-    assert layers.depth[row, column] == pytest.approx(glass, abs=0.5 * SPACING)  # it stands against the wall in front
+    assert glass - 1e-3 <= layers.depth[row, column] <= glass + 1.6 * SPACING  # it stands against the wall in front
 
 
 def test_what_is_before_the_water_hides_it():
