@@ -32,12 +32,8 @@ class Continuity:
     def __init__(self, arrays: State, context: FluidContext, forces: Forces):
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
-        own, slip, self.stored, self.voids = (
-            arrays.under("water.continuity"),
-            forces.walls.walls.slip,
-            forces.stored,
-            forces.voids,
-        )
+        own, slip = arrays.under("water.continuity"), forces.walls.walls.slip
+        self.stored, self.voids = forces.stored, forces.voids
         (self.diffused,) = own.reals((context.units.axis,), "diffused", kind=own.exact)
         self.sums, common = (sums := Sums()), (context.particles, context.constants, context.units, context.poses)
         self.opened, self.walled, c = sums.room(), sums.room(), context.constants

@@ -56,7 +56,7 @@ def choose_look(footage: Footage, **options: object) -> Look:
     if look.inset is None:
         look = replace(look, inset="surface" if _is_flume(footage) else "none")
     _check_size(look)
-    check_viewpoint(look, footage.space is not None)
+    check_viewpoint(look, footage.space is not None, footage.matters)
     if look.colour not in words:
         raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(words)}.")
     for name, known in WORDS.items():

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lab.paint.colours import SAMPLED_FRAMES, Colouring, round_up, spread, table
+from lab.paint.space.stance import lengths
 from lab.paint.water.vorticity import vorticity
 from solvers.mixture.bed import depth_up_to
 
@@ -40,7 +41,7 @@ def speed(beds: Sequence[Bed]) -> Colouring:
     """|u| relative to the tank."""
 
     def speeds(bed: Bed, frame: int) -> np.ndarray:
-        return np.hypot(*bed.drops("water_velocity", frame).T)
+        return lengths(bed.drops("water_velocity", frame))
 
     top = round_up(max(ends(beds, speeds)[1], beds[0].footage.water.spacing))
     factor, unit = (1.0, "m/s") if top >= 1.0 else (1e3, "mm/s")

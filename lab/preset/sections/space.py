@@ -17,6 +17,7 @@ PLANE_ALONE = {
 }
 INTEGRATORS = "verlet", "symplectic-euler"
 SHORTEST = 5.0  # diameters of a slice: a grain must not meet two images of another
+LEAST_LONG = 2.0  # reaches of a kernel: a particle must not meet two images of another, nor feel both end walls
 EVEN = 1e-9  # of the section's width: by how much its two sides may differ
 
 
@@ -89,6 +90,11 @@ def _faults_of_water(preset, key_of_space: str) -> Iterator[tuple[str, str]]:
     water, tank = preset.water, preset.tank
     if not tank.along or tank.turned:
         yield "water", f"water in space fills a tank that is drawn out; give tank.along in place of {key_of_space}"
+    elif tank.along < (least := LEAST_LONG * preset.liquid.reach):
+        yield (
+            "tank.along",
+            f"must be {show(least, 'm')} or more, two reaches of the water's kernel; or take finer water",
+        )
     beside = {name: bool(getattr(preset, name)) for name in ("grains", "air", "ship", "parts", "damping", "inflow")}
     for name in (name for name, there in beside.items() if there):
         yield name, f"in space water is alone in its tank so far; leave this out, or {key_of_space}"

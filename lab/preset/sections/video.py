@@ -28,6 +28,7 @@ CARGOES = (  # whose looks are in `lab.paint.cargo`
     *("acetate", "coal", "iron-ore", "copper-ore", "gold-ore", "aluminium", "stone"),
 )
 COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR, *OF_WET)
+PLANE_ALONE = "vorticity", "excess-pressure"
 OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR}
 
 OF_SPACE = "azimuth", "elevation", "orbit", "cut", "slice"  # keys of scenes in space
@@ -109,7 +110,7 @@ def colours_of(matters: Collection[str]) -> tuple[str, ...]:
     return (*words, *(OF_WET if {"grains", "water"} <= set(matters) else ()))
 
 
-def check_viewpoint(chosen: Video, in_space: bool) -> None:
+def check_viewpoint(chosen: Video, in_space: bool, matters: Collection[str] = ("grains",)) -> None:
     """Raise LabError for wishes that pictures of a scene in space, or in the plane, cannot fulfil; also of a `Look`."""
     for name in OF_SPACE:
         if getattr(chosen, name) is not None and not in_space:
@@ -118,13 +119,15 @@ def check_viewpoint(chosen: Video, in_space: bool) -> None:
         raise LabError("video.overlay: forces are drawn in the plane only; set trails or none.")
     if in_space and chosen.inset not in (None, "none"):
         raise LabError("video.inset: pictures in space have none; leave this out.")
-    if in_space and chosen.colour == "pressure":
+    if in_space and chosen.colour in PLANE_ALONE:
+        raise LabError(f"video.colour: {chosen.colour} is known in the plane only; set another, such as speed.")
+    if in_space and chosen.colour == "pressure" and "water" not in matters:
         raise LabError("video.colour: the pressure in grains is known in the plane only; set another, such as speed.")
 
 
 def check_video(video: Video, matters: Collection[str], in_space: bool = False) -> None:
     """Raise LabError for what cannot be shown, and for picture sizes that the video codec cannot encode."""
-    check_viewpoint(video, in_space)
+    check_viewpoint(video, in_space, matters)
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour in OF_WET:
         if not {"grains", "water"} <= set(matters):

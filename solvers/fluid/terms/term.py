@@ -84,7 +84,8 @@ class Term:
     """A model of the fluid in a pass over pairs. What a class does not define itself is not compiled.
 
     `begin(block, sums)` before the neighbours, where sums do not start at zero; `add(block, pair, sums)` for each
-    neighbour; `add_wall(block, pair, sums)` for each wall particle; `end(block, sums)` after all.
+    neighbour; `add_wall(block, pair, sums)` for each wall particle; `end(block, sums)` after all. In the pass over wall
+    particles (`Extrapolation`) the block is one of these, told by its number, and a neighbour is a `Seen`.
     """
 
     parts = ("begin", "add", "add_wall", "end")

@@ -30,6 +30,8 @@ AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
         (CHICKPEAS, WATER, "grains: in space water is alone in its tank so far; leave this out, or tank.along"),
         (SLOSHING, {"air.density": "1.2 kg/m^3"}, "air: in space water is alone in its tank so far"),
         (SLOSHING, {"gauges.P1.place": ["0 mm", "0 mm"]}, "gauges.P1: in space no gauge of pressure is read yet"),
+        (SLOSHING, {"tank.along": "5 mm"}, "tank.along: must be 80 mm or more, two reaches of the water's kernel"),
+        (SLOSHING, {"video.colour": "vorticity"}, "video.colour: vorticity is known in the plane only"),
         (SLOSHING, {"water.between_walls": True}, "water.between_walls: this is of the plane alone"),
         (SLOSHING, {"tank.along": False, "tank.turned": True}, "water: water in space fills a tank that is drawn out"),
         (CHICKPEAS, {"tank.roughness": "5 mm"}, "tank.roughness: this is of the plane alone"),

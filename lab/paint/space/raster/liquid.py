@@ -3,9 +3,8 @@
 As screen-space fluids are drawn (van der Laan, Green & Sainz 2009): the particles' spheres say how far away the water
 is in each pixel; these depths are evened by a narrow filter, so that the surface is smooth and its edges stay (as
 Truong & Yuksel 2018 keep theirs); the normals follow from them. Where water stands against a wall that one looks
-through, it ends there. How thick the water is along each ray is the volume of the
-particles over the area of what a pixel sees. Light is taken by it as Beer and Lambert have it, and mirrored as Schlick
-(1994) has Fresnel's law.
+through, it ends there. How thick the water is along each ray is the volume of the particles over the area of what a
+pixel sees. Light is taken by it as Beer and Lambert have it, and mirrored as Schlick (1994) has Fresnel's law.
 """
 
 import numpy as np
