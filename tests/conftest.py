@@ -1,7 +1,13 @@
 """What all tests share."""
 
 import gc
+import importlib
 import os
+import pickle
+import tomllib
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
 
 # Workers share the cores; threads of numpy's that wait for each other by spinning would take all of a busy machine.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy reads it when it is imported
@@ -24,6 +30,27 @@ which short tests do not win back; those of water and outlines in a third more""
 _of_file: list = [None]  # the file of the last test
 
 
+def _read_once(parse):
+    """Each text is parsed once: the lab's presets are read some thousand times."""
+
+    @cache
+    def kept(text) -> bytes | None:
+        found = parse(text)
+        try:
+            return pickle.dumps(found)
+        except RecursionError:  # tables in tables, very deep
+            return None
+
+    def read(text, **how):
+        whole = None if how else kept(text)
+        return pickle.loads(whole) if whole else parse(text, **how)
+
+    return read
+
+
+tomllib.loads = _read_once(tomllib.loads)
+
+
 def pytest_addoption(parser):
     parser.addoption("--rounding", metavar="strict|NUMBER", help=ROUNDING)
     parser.addoption("--as-shipped", action="store_true", help=AS_SHIPPED)
@@ -31,6 +58,7 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     """No verdict may hang on how a processor rounds; tests of exact places and of equal bits may see the last digit."""
+    gc.disable()  # until all tests are found: what is imported and collected stays
     if config.getoption("--as-shipped"):
         os.environ.pop("CARGOLAB_COMPILE", None)
     else:
@@ -71,8 +99,23 @@ def one_start():
     held.release()
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session):
+    """Workers side by side begin with other files, so that each finds what others have compiled to bytecode."""
+    worker, workers = (os.environ.get(f"PYTEST_XDIST_{name}", "") for name in ("WORKER", "WORKER_COUNT"))
+    if not worker.startswith("gw") or worker == "gw0":
+        return
+    folders = [folder for folder in map(Path, session.config.args) if folder.is_dir()]
+    files = sorted(file for folder in folders for file in folder.resolve().rglob("test_*.py"))
+    first = int(worker[2:]) * len(files) // int(workers)
+    for file in files[first:]:
+        with suppress(Exception, pytest.skip.Exception):  # pytest says why, when it comes to this file
+            importlib.import_module(".".join(file.relative_to(session.config.rootpath).with_suffix("").parts))
+
+
 def pytest_collection_finish():
     """Look no more for garbage among the thousands of tests that are there now: that takes 0.25 s each time."""
+    gc.enable()
     gc.collect()
     gc.freeze()
 
