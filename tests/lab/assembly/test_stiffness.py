@@ -34,7 +34,8 @@ def test_the_smallest_grain_under_the_largest_is_pressed_as_deep_as_the_level_me
     assert given.stiffness_scale == 3e-3
 
 
-@pytest.mark.parametrize("level", [pytest.param("draft", marks=pytest.mark.slow), "standard"])
+@pytest.mark.slow
+@pytest.mark.parametrize("level", ["draft", "standard"])
 def test_small_grains_stop_a_ball_of_ten_times_their_size(tmp_path, level):
     """They throw it back, pressed by less than the watch allows."""
     scene, places = build(struck(tmp_path, 10.0, level))

@@ -37,6 +37,7 @@ def started(preset) -> Simulation:
     return settled(scene, places, settling(preset), lambda *given: Simulation(*given, 1), Progress(True))
 
 
+@pytest.mark.slow
 def test_grains_fly_straight_and_meet(tmp_path):
     """Two meet head-on and part with e times their speed; a third passes them by on a straight line."""
     places = [(-0.02, 0.05), (0.02, 0.05), (-0.04, 0.01)]

@@ -37,14 +37,6 @@ def hertz() -> np.ndarray:
     return 4.0 / 3.0 * modulus * size * DEEP**1.5
 
 
-def test_grains_that_lie_in_each_other_are_refused_in_one_sentence(tmp_path):
-    with recorder(tmp_path, radius=np.full((1, 4), RADIUS)) as writer:
-        writer.sample(sample(0.0))
-        writer.frame(frame(0.0, position=np.full((1, 4, 2), 0.02)))
-    with open_footage(tmp_path) as footage, pytest.raises(LabError, match=r"at 0 s: grains lie in each other\.$"):
-        choose_beds(footage)[0].pressing(0)
-
-
 @pytest.mark.slow  # those of Hertz are found below
 def test_forces_found_again_are_those_of_the_run():
     loaded = load("tilting/quick", {"run.repeats": 1, "grains.count": 40, "run.threads": 1})
@@ -74,7 +66,7 @@ def test_forces_found_again_are_those_of_the_run():
 
 @pytest.fixture(scope="module")
 def standing(tmp_path_factory):
-    """Footage of the column, in its last frame without the grain by itself. Those before it have their own kernels."""
+    """Footage of the column, in its last frame without the grain by itself."""
     folder = tmp_path_factory.mktemp("standing")
     with recorder(folder, radius=np.full((1, 4), RADIUS)) as writer:
         for now, lost in ((0.0, False), (1.0, True)):
@@ -95,6 +87,24 @@ def test_forces_and_pressures_of_a_column_are_those_of_hertz(standing, row):
     low, middle, top = hertz()
     of_column = np.array([low + middle, middle + top, top]) / (4.0 * np.pi * RADIUS**2)
     assert pressed == pytest.approx([*of_column, 0.0], rel=2e-3)  # arms are shorter by half an overlap
+
+
+def test_forces_are_told_by_the_numbers_of_the_grains(standing):
+    """Whatever the order in which the run holds them."""
+    (bed,) = choose_beds(standing)
+    bed.pressing(0)
+    made = standing._again._simulation
+    usual, numbering = made.pressing(), made.grains.numbering
+    order, kept = np.array([2, 0, 3, 1]), numbering.number
+    numbering.number = kept[:, order]
+    assert made.pressing().grains[:, 0].tolist() == order[usual.grains[:, 0]].tolist()
+    numbering.number = kept
+
+
+def test_grains_that_lie_in_each_other_are_refused_in_one_sentence(standing):
+    choose_beds(standing)[0].pressing(0)
+    with pytest.raises(LabError, match=r"at 2 s: grains lie in each other\.$"):
+        standing._again.read(2.0, np.full((1, 4, 2), 0.02), np.zeros((1, 4)))
 
 
 def test_chains_are_as_thick_as_their_forces_and_reach_to_the_contacts(standing):

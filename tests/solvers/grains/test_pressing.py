@@ -44,14 +44,8 @@ def weights_borne(made: Simulation) -> np.ndarray:
     return borne / (made.grains.mass[0, :, None] * GRAVITY)
 
 
-@pytest.mark.parametrize(
-    "schedule, units",
-    [
-        ("per-world", 1),
-        pytest.param("per-band", 3, marks=pytest.mark.slow),
-        pytest.param("per-grain", None, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow  # Hertz's forces in a column: `tests/lab/paint/test_forces.py`
+@pytest.mark.parametrize("schedule, units", [("per-world", 1), ("per-band", 3), ("per-grain", None)])
 def test_discs_bear_their_weights_with_any_lists(schedule, units):
     made = bed(None, schedule, units=units)
     assert weights_borne(made) == pytest.approx(np.tile([0.0, 1.0], (COLUMNS * ROWS, 1)), abs=0.02)
@@ -72,6 +66,7 @@ def test_irregular_grains_bear_their_weights_and_observing_changes_nothing(conta
     made.close()
 
 
+@pytest.mark.slow
 def test_grains_go_by_their_own_numbers():
     made = bed()
     whole = made.pressing()

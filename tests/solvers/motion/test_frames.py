@@ -1,6 +1,6 @@
 """The tank's frame gives the same physics as the earth's: held at an angle, in motion, for a grain in flight."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -165,6 +165,7 @@ def test_a_moving_tank_equals_a_box_of_moving_walls():
 
 
 def test_free_flight_is_a_parabola_in_the_earth_frame():
+    """Under the gravity that the scene was made with, and under another one that it is altered to."""
     decks = [Deck(), Deck(roll=(0.6, 1.0, 0.0)), Deck(roll=(0.4, 1.5, 2.0), sway=(0.05, 1.0, 0.3))]
     start = np.array([[[0.0, 1.0]], [[0.2, 1.3]], [[-0.3, 0.9]]])
     velocity = np.array([[[0.8, 1.0]], [[-1.0, 0.5]], [[0.0, 0.0]]])
@@ -172,19 +173,23 @@ def test_free_flight_is_a_parabola_in_the_earth_frame():
     made = simulation(
         start, [1e-2], box(2.0, 2.0), velocity=velocity, spin=spin, motions=[deck.motions() for deck in decks], step=dt
     )
-    made.advance(round(time / dt))
-    found = made.snapshot()
+    for gravity in (GRAVITY, 1.62):
+        made.alter(replace(made.scene, gravity=gravity))
+        made.start_clock()
+        made.place(start, velocity, spin)
+        made.advance(round(time / dt))
+        found = made.snapshot()
+        for w, deck in enumerate(decks):
+            x, v = deck.carried(0.0, start[w], velocity[w])
+            _, turned, _, rate = deck.pose(0.0)
+            angle, spun = turned + (spin[w] + rate) * time, spin[w] + rate
+            weight = np.array([0.0, -gravity])
+            x, v = x + v * time + 0.5 * weight * time**2, v + weight * time
+            earth_x, earth_v = deck.carried(time, found["position"][w], found["velocity"][w])
+            _, turned, _, rate = deck.pose(time)
+            # Ten times what the second-order scheme leaves at this step.
+            assert np.allclose(earth_x, x, rtol=0, atol=1e-7)
+            assert np.allclose(earth_v, v, rtol=0, atol=1e-6)
+            assert np.allclose(found["angle"][w] + turned, angle, rtol=0, atol=3e-8)
+            assert np.allclose(found["spin"][w] + rate, spun, rtol=0, atol=5e-7)
     made.close()
-    for w, deck in enumerate(decks):
-        x, v = deck.carried(0.0, start[w], velocity[w])
-        _, turned, _, rate = deck.pose(0.0)
-        angle, spun = turned + (spin[w] + rate) * time, spin[w] + rate
-        weight = np.array([0.0, -GRAVITY])
-        x, v = x + v * time + 0.5 * weight * time**2, v + weight * time
-        earth_x, earth_v = deck.carried(time, found["position"][w], found["velocity"][w])
-        _, turned, _, rate = deck.pose(time)
-        # Ten times what the second-order scheme leaves at this step.
-        assert np.allclose(earth_x, x, rtol=0, atol=1e-7)
-        assert np.allclose(earth_v, v, rtol=0, atol=1e-6)
-        assert np.allclose(found["angle"][w] + turned, angle, rtol=0, atol=3e-8)
-        assert np.allclose(found["spin"][w] + rate, spun, rtol=0, atol=5e-7)

@@ -88,6 +88,7 @@ def test_a_change_of_friction_acts_on_existing_contacts(run):
     assert gained == [pytest.approx(0.3 * 9.81, rel=0.1), pytest.approx(0.1 * 9.81, rel=0.1)]
 
 
+@pytest.mark.slow  # of grains in flight: `test_frames.py`
 def test_a_change_of_gravity_acts(run):
     start = run.state()
     run.alter(replace(run.scene, gravity=1.62))

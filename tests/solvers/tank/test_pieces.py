@@ -20,9 +20,8 @@ HOW = {
 }
 
 
-@pytest.mark.parametrize(
-    "how", ["discs", *(pytest.param(how, marks=pytest.mark.slow) for how in HOW if how != "discs")]
-)
+@pytest.mark.slow  # discs in one unit: `test_load.py`
+@pytest.mark.parametrize("how", HOW)
 def test_each_piece_bears_the_grains_on_it(how):
     """A grain on the floor, one on a shelf, one on a fixed grain in a pocket, one that a paddle carries: its weight.
 
