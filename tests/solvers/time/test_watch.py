@@ -1,4 +1,5 @@
-"""The watch: what stops a simulation, its message, and that the other worlds and the state are unchanged."""
+"""What stops a simulation, its message, and that all else is unchanged; and states in which somebody has changed
+places in lists: no kernel uses an index outside an array."""
 
 import re
 
@@ -124,3 +125,60 @@ def test_deep_overlap_is_detected(run, against):
 def test_during_settling_the_message_has_the_settling_time(run):
     run.grains.grains.velocity[0][0, 2] = np.nan
     assert told_time(caught(run.settle, 1e-6, 1.0)) == pytest.approx(run.dt, rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def touching(built):
+    """The same, with grains that touch one another and the floor; the simulation does not come back from there."""
+    built.dt, built.origin = built.step_of_scene, 0.0
+    built.start_clock()
+    row = RADIUS * np.array([[-1.9999, 0.9999], [0.0, 0.9999], [1.9999, 0.9999]])
+    built.place(np.tile(row, (3, 1, 1)))
+    built.advance(20)
+    return built
+
+
+def forged(run, kind: str, which: str, value: int) -> tuple[str, dict[str, np.ndarray]]:
+    """The name of an array of a state, and the state with another number in it."""
+    state = run.state()
+    name = f"{kind}.{which}"
+    values = state[name].copy()
+    values.flat[0] = value
+    return name, {**state, name: values}
+
+
+@pytest.mark.parametrize("value", [2_000_000_000, -1_000_000, 10_000])
+@pytest.mark.parametrize("which", ["length", "first"])
+@pytest.mark.parametrize("kind", ["pairs", "contacts"])
+def test_a_list_longer_than_its_array_is_refused_without_changes(touching, kind, which, value):
+    name, state = forged(touching, kind, which, value)
+    before = touching.state()
+    with pytest.raises(ValueError, match=f"array {name}"):
+        touching.restore(state)
+    after = touching.state()
+    assert all(np.array_equal(before[key], after[key]) for key in before)
+
+
+@pytest.mark.parametrize("value", [2_000_000_000, -1_000_000, 10_000])
+@pytest.mark.parametrize("which", ["grain", "mate"])
+@pytest.mark.parametrize("kind", ["pairs", "contacts"])
+def test_contacts_with_invalid_indices_are_removed(touching, kind, which, value):
+    _, state = forged(touching, kind, which, value)
+    before, listed = touching.state(), getattr(touching.grains.lists, kind)
+    touching.restore(state)
+    places = getattr(listed, which).to_numpy()
+    ends = {
+        "grain": touching.grains.grains.stride,
+        "mate": touching.grains.grains.stride if kind == "pairs" else touching.walls.features,
+    }
+    assert places.min() >= 0 and places.max() < ends[which] * (len(PLACE) if kind == "pairs" else 1)
+    touching.restore(before)
+
+
+def test_an_unchanged_state_is_accepted(touching):
+    state = touching.state()
+    assert touching.grains.lists.pairs.length.to_numpy().min() > 1
+    touching.advance(30)
+    touching.restore(state)
+    after = touching.state()
+    assert all(np.array_equal(state[key], after[key]) for key in state)
