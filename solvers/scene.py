@@ -160,10 +160,14 @@ class Scene:
         return len(self.solid.faces(np.asarray(self.outline))) if self.solid and not self.flows else 0
 
     @property
+    def wall_pieces(self) -> int:
+        """How many of the pieces are the walls of tanks: of each tank or, in space, its faces."""
+        return self.faces or len(self.tanks)
+
+    @property
     def pieces(self) -> int:
         """How many pieces bear loads: the walls of each tank, in space its faces, the parts, any fixed grains."""
-        walls = self.faces or len(self.tanks)
-        return walls + len(self.parts) + sum(matter.pieces for matter in self.matters)
+        return self.wall_pieces + len(self.parts) + sum(matter.pieces for matter in self.matters)
 
     @property
     def shares(self) -> np.ndarray | None:
@@ -176,7 +180,7 @@ class Scene:
         found = shares_of_loads(self.tanks, self.vessels, self.axles, more)
         if found is None and self.responds:
             return np.zeros((self.worlds, self.pieces))
-        free = [len(self.tanks) + k for k, part in enumerate(self.parts) if part.free]
+        free = [self.wall_pieces + k for k, part in enumerate(self.parts) if part.free]
         if free:
             found[:, free] = 0.0
         return found

@@ -284,9 +284,8 @@ class Simulation:
         return {name: values for matter in matters for name, values in matter.snapshot(now).items()}
 
     def placed(self) -> dict[str, np.ndarray]:
-        """Where the scene's parts are now: displacements (W, P, axes) m and turns (W, P) about x, in the tank."""
-        place, turn = self.parts.places(self.origin + self.time)
-        return {"part": np.pad(place, ((0, 0), (0, 0), (0, self.scene.axes - place.shape[2]))), "part_turn": turn}
+        """Where the scene's parts are now in the tank, see `Pieces.placed`."""
+        return self.parts.placed(self.origin + self.time, self.scene.axes)
 
     def pressing(self, world: int = 0) -> Pressing:
         """The present elastic contact forces in a world; none without grains."""

@@ -127,7 +127,7 @@ def refuse_space(scene) -> None:
         return
     plane_alone = {
         "air": bool(water.air),
-        "parts": bool(scene.parts),
+        "plates": any(part.shape is None for part in scene.parts),
         "gauges": bool(water.gauges or water.levels or water.edges),
         "damping zones": bool(water.damping),
         "several tanks": bool(scene.more_tanks),

@@ -144,8 +144,8 @@ class Forces:
             self.powers[2][u] = 0.0 - power
         if ti.static(self.bodies.count > 0):
             for k in range(self.bodies.count):
-                load = [self.bodies.force[n][u, k] for n in ti.static(range(3))]
-                self.load.book(u, self.outlines + k, ti.Vector([thick * load[n] for n in ti.static(range(3))]), dt)
+                load = [thick * self.bodies.force[n][u, k] for n in ti.static(range(self.freedoms))]
+                self.load.book(u, self.outlines + k, ti.Vector(load), dt)
             before += self.bodies.borne(u, tank)
             self.bodies.book(u, kick, dt)
         self.book(u, tank, total - before, dt)

@@ -11,7 +11,7 @@ from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
-from solvers.tank.pieces import AT_END
+from solvers.tank.pose import AT_END
 from solvers.tank.substeps import Substeps
 
 

@@ -97,7 +97,7 @@ class Touch:
     @property
     def least_mass(self) -> float:
         """m_c (kg), of a collision of the farthest corners."""
-        return 1.0 / sum(1.0 / part.free.mass + _arm(part) ** 2 / part.free.inertia for part in self._free)
+        return 1.0 / sum(1.0 / part.free.mass + _arm(part) ** 2 / part.free.least_inertia for part in self._free)
 
     @property
     def friction(self) -> float:
@@ -128,6 +128,8 @@ class Touch:
 
 def _arm(part: Part) -> float:
     """Distance (m) of the farthest corner from the centre of mass."""
+    if part.shape:
+        return part.shape.farthest(np.array(part.free.centre))
     return max(hypot(y - part.free.centre[0], z - part.free.centre[1]) for y, z in part.points)
 
 
@@ -151,13 +153,12 @@ def fall_speed(scene, part: Part) -> float:
     """
     tank, fluid = scene.tanks[part.tank], scene.fluid
     floor = tank.outline[:, 1].min()
-    height = max(0.0, min(z for _, z in part.points) - floor)
+    height = max(0.0, part.lowest - floor)
     wet, ratio = 0.0, 0.0
     if fluid:
-        places = fluid.particles["position"][0][~fluid.particles["gas"][0]]
+        places = fluid.particles["position"][0][~fluid.particles["gas"][0], :2]
         wet = min(height, places[tank.holds(places), 1].max(initial=floor) - floor)
-        area = abs(moments(np.asarray(part.points, dtype=float))[0])
-        ratio = fluid.water.density * area * tank.thickness / part.free.mass
+        ratio = fluid.water.density * part.volume(tank.thickness) / part.free.mass
     return sqrt(max(0.0, 2.0 * scene.gravity * (height - ratio * wet)))
 
 

@@ -9,10 +9,9 @@ from solvers.machine.units import Units
 from solvers.motion.contact_pairs import OF_TANK, SHEAR, Shape, Touch, pairs_of, shapes_of
 from solvers.motion.contact_search import N_Y, N_Z, OTHER, OVERLAP, OWNER, P_Y, P_Z, ContactSearch
 from solvers.motion.free import INERTIA, MASS, NOT_FREE, FreeBodies
-from solvers.motion.on_body import OnBody, check_aboard
 from solvers.space.impact import dragged, over_the_step, pressed, stretched
 from solvers.tank.load import Load
-from solvers.tank.pieces import RATE, V_Y, V_Z, Pieces, Y, Z
+from solvers.tank.pieces import RATE, V_Y, V_Z, Y, Z
 
 AHEAD = 0.5  # of a step by which the leapfrog's velocities are predicted
 SPRING, TWICE_RATIO, SHEAR_SPRING, FRICTION = range(4)  # columns of the table of pairs: k, 2 ζ, k_t, μ
@@ -57,7 +56,7 @@ class Contacts:
         own = arrays.under("contacts")
         self.search = ContactSearch(own, self.pieces, self.worlds, shapes, [(one, other) for one, other, _ in pairs])
         self.count, self.pairs = self.search.count, len(pairs)
-        laws = [_law(touch, dt) for _, _, touch in pairs]
+        laws = [law_of(touch, dt) for _, _, touch in pairs]
         self.table = own.holding("pairs", np.array(laws), "pair number", own.exact)
         self.booked = own.holding("booked", np.array(_booked(pairs, bodies.first)), "pair number", ti.i32)
         world = Axis("world", self.worlds)
@@ -208,7 +207,7 @@ class Contacts:
         self.spent[w], self.power[w] = self.spent[w] - power * kick, self.power[w] - power
 
 
-def _law(touch: Touch, dt: float) -> list[float]:
+def law_of(touch: Touch, dt: float) -> list[float]:
     """A row of the table of pairs, at steps of dt (s)."""
     spring = touch.spring(dt)
     return [spring, 2.0 * touch.damping_ratio, SHEAR * spring, touch.friction]
@@ -222,18 +221,3 @@ def _booked(pairs: list[tuple[Shape, Shape, Touch]], first: int) -> list[list[in
         pieces = [shape.tank if shape.part == OF_TANK else first + shape.part for shape in both]
         found.append([*pieces, known.setdefault(frozenset(pieces), len(known))])
     return found
-
-
-def make_bodies(arrays: State, pieces: Pieces, carrier, scene, dt: float) -> FreeBodies:
-    """The free bodies among the pieces of a scene (`solvers.scene.Scene`) with steps of dt (s), and their contacts.
-
-    Raises Unavailable.
-    """
-    check_aboard(scene)
-    every = scene.fluid.substeps if scene.fluid else 1
-    bodies = FreeBodies(arrays, pieces, carrier, len(scene.tanks), every)
-    if bodies.count:
-        bodies.join(Contacts(arrays, scene, bodies, every * dt))
-    if scene.hold:
-        bodies.take_aboard(OnBody(arrays, scene, bodies, carrier))
-    return bodies

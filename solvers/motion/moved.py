@@ -4,11 +4,17 @@ from dataclasses import dataclass
 
 import taichi as ti
 
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
-from solvers.motion.contacts import make_bodies
+from solvers.motion.contacts import Contacts
+from solvers.motion.contacts_in_space import ContactsInSpace
+from solvers.motion.free import FreeBodies
+from solvers.motion.free_in_space import FreeBodiesInSpace
+from solvers.motion.on_body import OnBody, check_aboard
 from solvers.motion.prescribed import Prescribed
 from solvers.tank.parts import Part, travel
 from solvers.tank.pieces import Pieces
+from solvers.tank.pieces_in_space import PiecesInSpace
 
 
 @ti.func
@@ -59,6 +65,23 @@ def make_pieces(arrays: State, scene, carrier, dt: float) -> Pieces:
     carriers = [
         Prescribed(arrays.under(f"parts.{k}"), each, 0.0, 0.0) if each[0] else None for k, each in enumerate(moves)
     ]
-    pieces = Pieces(arrays, scene.parts, carriers, scene.worlds)
+    kind = PiecesInSpace if scene.axes > PLANE and scene.fluid else Pieces  # spheres meet parts of the plane, drawn out
+    pieces = kind(arrays, scene.parts, carriers, scene.worlds)
     pieces.join(make_bodies(arrays, pieces, carrier, scene, dt))
     return pieces
+
+
+def make_bodies(arrays: State, pieces: Pieces, carrier, scene, dt: float) -> FreeBodies:
+    """The free bodies among the pieces of a scene (`solvers.scene.Scene`) with steps of dt (s), and their contacts.
+
+    Raises Unavailable.
+    """
+    check_aboard(scene)
+    every = scene.fluid.substeps if scene.fluid else 1
+    kinds = (FreeBodies, Contacts) if pieces.axes == PLANE else (FreeBodiesInSpace, ContactsInSpace)
+    bodies = kinds[0](arrays, pieces, carrier, scene.wall_pieces, every)
+    if bodies.count:
+        bodies.join(kinds[1](arrays, scene, bodies, every * dt))
+    if scene.hold:
+        bodies.take_aboard(OnBody(arrays, scene, bodies, carrier))
+    return bodies

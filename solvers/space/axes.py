@@ -55,3 +55,10 @@ def dot(a: ti.template(), b: ti.template()):
     for k in ti.static(range(1, len(a))):
         total += a[k] * b[k]
     return total
+
+
+@ti.func
+def joined(along: ti.template(), about: ti.template()):
+    """The entries of two lists in space one after the other, as a Taichi vector of numbers."""
+    both = [along, about]
+    return ti.Vector([both[k // 3][k % 3] for k in ti.static(range(6))])

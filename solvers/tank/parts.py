@@ -4,9 +4,12 @@ from dataclasses import dataclass
 from math import hypot, sqrt
 from typing import Annotated, ClassVar
 
+import numpy as np
 import taichi as ti
 
 from solvers.machine.marks import Doc, Interval, Unit
+from solvers.tank.outline import moments
+from solvers.tank.shapes import PrismShape, SphereShape
 
 SHORTEST = 1e-12  # s, the least time in which a part speeds up; far below any step
 
@@ -50,6 +53,7 @@ class Part:
     free: ClassVar = None
     hull: ClassVar = None
     sieve: ClassVar = False
+    shape: ClassVar = None
 
     @property
     def way(self) -> float:
@@ -79,34 +83,54 @@ class Free:
     """What a part that moves freely is: its `mass` (kg) and `inertia` (kg m²) about the `centre` of mass (m), as drawn.
 
     Mass and inertia are those of the slab that the tank is thick. It is held until `release` (s). `friction` and
-    `restitution` are those of its surface and a wall.
+    `restitution` are those of its surface and a wall. In space the centre has three coordinates, and the inertia is
+    the tensor (3, 3) in the axes y, z, x.
     """
 
     mass: float
-    inertia: float
-    centre: tuple[float, float]
+    inertia: float | tuple[tuple[float, ...], ...]
+    centre: tuple[float, ...]
     release: float = 0.0
     friction: float = 0.3
     restitution: float = 0.3
 
+    @property
+    def least_inertia(self) -> float:
+        """The least of the moments of inertia (kg m²) about axes through the centre."""
+        return float(np.linalg.eigvalsh(np.atleast_2d(self.inertia)).min())
+
 
 @dataclass(frozen=True)
 class Opening:
-    """A hole through the wall of a hull, between two points (m) in it as drawn; it is covered until `opens` (s)."""
+    """A hole through the wall of a hull, between two points (m) in it as drawn; it is covered until `opens` (s).
+
+    In space it is round: the points are the ends of its diameter in the section, and `x` (m) is where its middle is.
+    """
 
     ends: tuple[tuple[float, float], tuple[float, float]]
     opens: float = 0.0
+    x: float = 0.0
+
+    def place(self, axes: int) -> tuple[np.ndarray, np.ndarray, float]:
+        """Its middle (axes,) m, the unit normal of the wall there, to the left of its line, and half its width (m)."""
+        start, end = np.array(self.ends)
+        length = float(np.hypot(*(end - start)))
+        along = (end - start) / length
+        middle, normal = np.zeros(axes), np.zeros(axes)
+        middle[:2], normal[:2] = 0.5 * (start + end), (-along[1], along[0])
+        middle[2:] = self.x
+        return middle, normal, 0.5 * length
 
 
 @dataclass(frozen=True)
 class Hull:
     """A body that is hollow: its `rooms` are simple polygons (m) as drawn, `wall` (m) what is between them and without.
 
-    A wall between two rooms is as thick. `openings` lead through the walls.
+    A wall between two rooms is as thick. `openings` lead through the walls. In space rooms are prisms.
     """
 
     wall: float
-    rooms: tuple[tuple[tuple[float, float], ...], ...]
+    rooms: tuple[tuple[tuple[float, float], ...] | PrismShape, ...]
     openings: tuple[Opening, ...] = ()
 
 
@@ -117,7 +141,7 @@ class Body(Part):
     Its `motions` are those that a tank may have (`solvers.motion`), in the tank's frame, from the drawn place on; they
     follow its `move`. They begin with the tank's own motion. `tank` is the number of the tank in which it stands. One
     that is `free` moves as what pushes it says; it has no motions. A solid one with a `hull` is hollow. A `sieve` holds
-    grains back and lets water pass.
+    grains back and lets water pass. In space a solid one has a `shape`, of which the points are the section.
     """
 
     closed: bool = False
@@ -126,6 +150,16 @@ class Body(Part):
     free: Free | None = None
     hull: Hull | None = None
     sieve: bool = False
+    shape: SphereShape | PrismShape | None = None
+
+    @property
+    def lowest(self) -> float:
+        """The height (m) of its lowest point as drawn."""
+        return float(self.shape.bounds[0][1]) if self.shape else min(z for _, z in self.points)
+
+    def volume(self, thickness: float) -> float:
+        """Volume (m³) of a solid body, in the plane that of a slab of a `thickness` (m)."""
+        return self.shape.volume if self.shape else abs(moments(np.asarray(self.points, float))[0]) * thickness
 
     def fastest(self) -> float:
         """Bound on the speed (m/s) of its corners."""

@@ -5,12 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State
+from solvers.space.axes import named
 from solvers.tank.parts import Part
+from solvers.tank.pose import AT_START, PoseReader, numbers
 
 Y, Z, V_Y, V_Z, COSINE, SINE, RATE = range(7)  # a pose in the tank: origin (m), its velocity, turn, its rate (rad/s)
-NUMBERS = 7
-AT_START, AT_MIDDLE, AT_END = range(3)  # of a step
+NUMBERS = numbers(PLANE)
 
 
 @ti.data_oriented
@@ -23,7 +25,10 @@ class Pieces:
     At a pose (O, θ) a point that is drawn at p is at O + R(θ) p and moves at V + ω × R(θ) p. Matters that look at any
     time ask for the poses `at` it; `poses` (W, pieces, 21) are those of a step, `pull` the acceleration of the origin
     and of the turn (W, pieces) as it begins, `way` (W,) how far (m) any corner goes in it, once it is noted (`note`).
+    `pose` reads them.
     """
+
+    axes = PLANE
 
     def __init__(self, arrays: State, parts: Sequence[Part], carriers: Sequence, worlds: int):
         self.parts, self.count, self.worlds = tuple(parts), len(parts), worlds
@@ -38,18 +43,35 @@ class Pieces:
         self.moving, self.turning = any(self.moves), any(self.turns)
         self.fastest = max((part.fastest() for part in parts), default=0.0)  # m/s
         self.size = NUMBERS if self.turning else COSINE  # of a pose, as `at` tells it
-        corners = [np.asarray(part.points, dtype=float) for part in parts]
-        self.corners = [len(points) for points in corners]
         if parts:
-            own, each = arrays.under("pieces"), (Axis("world", worlds), Axis("part", self.count))
-            farthest = np.array([np.hypot(*points.T).max() for points in corners])
-            self.arms = own.holding("arms", farthest, "part", own.exact)
-            (self.poses,) = own.reals((*each, Axis("number", 3 * NUMBERS)), "poses", kind=own.exact, kept=False)
-            self.pull = own.reals(each, "pull_y", "pull_z", "pull_turn", kind=own.exact, kept=False)
-            (self.way,) = own.reals(each[:1], "way", kept=False)
+            self._declare(arrays.under("pieces"))
+
+    def _declare(self, own: State) -> None:
+        """Make the arrays."""
+        each, axes = (Axis("world", self.worlds), Axis("part", self.count)), self.axes
+        poses = Axis("number", 3 * numbers(axes))
+        (self.poses,) = own.reals((*each, poses), "poses", kind=own.exact, kept=False)
+        names = *named("pull", axes), *(named("pull_turn", axes) if axes > PLANE else ("pull_turn",))
+        self.pull = own.reals(each, *names, kind=own.exact, kept=False)
+        (self.way,) = own.reals(each[:1], "way", kept=False)
+        self.pose = PoseReader(self.poses, axes)
+        farthest = np.array([self.arm(part) for part in self.parts])
+        self.arms = own.holding("arms", farthest, "part", own.exact)
+        if axes == PLANE:
+            self._declare_corners(own)
+
+    def _declare_corners(self, own: State) -> None:
+        """Make the arrays of the drawn corners, of which `gone` tells how far they go."""
+        corners = [np.asarray(part.points, dtype=float) for part in self.parts]
+        self.corners = [len(points) for points in corners]
         if self.turning:
             drawn = np.array([points[np.minimum(np.arange(max(self.corners)), len(points) - 1)] for points in corners])
             self.drawn = own.holding("drawn", drawn, "part corner direction", own.exact)
+
+    @staticmethod
+    def arm(part: Part) -> float:
+        """How far (m) any point of a part is from the drawn origin."""
+        return float(np.hypot(*np.asarray(part.points, dtype=float).T).max())
 
     def join(self, bodies) -> None:
         """Take the free `bodies` among the pieces, which touch as a step opens, and move once its loads are known."""
@@ -122,10 +144,14 @@ class Pieces:
         for w in range(self.worlds):
             self.note(w, time, 0.0)
 
-    def places(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Where the pieces are in the tank at a time (s): displacements (W, pieces, 2) m of the origin, and turns."""
-        if not self.count:
-            return np.zeros((self.worlds, 0, 2)), np.zeros((self.worlds, 0))
-        self.note_at(time)
-        poses = self.poses.to_numpy()
-        return poses[..., [Y, Z]], np.arctan2(poses[..., SINE], poses[..., COSINE])
+    def placed(self, time: float, axes: int) -> dict[str, np.ndarray]:
+        """Where the pieces are in the tank at a time (s): displacements (W, pieces, axes) m of the origin, and turns.
+
+        Pieces in the plane may stand in a scene of more axes.
+        """
+        place, turn = np.zeros((self.worlds, self.count, axes)), np.zeros((self.worlds, self.count))
+        if self.count:
+            self.note_at(time)
+            poses = self.poses.to_numpy()
+            place[..., :PLANE], turn = poses[..., [Y, Z]], np.arctan2(poses[..., SINE], poses[..., COSINE])
+        return {"part": place, "part_turn": turn}

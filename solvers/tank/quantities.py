@@ -17,6 +17,9 @@ FRAMES = (
     Quantity("part", "m", directions, "displacement of each moving part in the tank", per="part"),
     Quantity("part_turn", "rad", label="angle by which each part has turned in the tank", per="part", never=0.0),
 )
+FRAMES_OF_BODIES_IN_SPACE = (
+    Quantity("part_pitch_yaw", "rad", ("pitch", "yaw"), "pitch and yaw of each part in the tank", per="part"),
+)
 OF_FACES = (
     Quantity(
         "face_force",

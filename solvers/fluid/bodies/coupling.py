@@ -8,13 +8,13 @@ from solvers.fluid.terms.term import Sums, Term
 from solvers.fluid.walls.tangential_correction import Leaning, TangentialCorrection
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axis, State
-from solvers.motion.free import HELD, INERTIA, MASS
-from solvers.motion.poses import AT_START
-from solvers.space.axes import dot
+from solvers.motion.free import HELD
+from solvers.space.axes import dot, named, named_turns, swing, turns
+from solvers.space.tangent import moment
 from solvers.tank.load import Load
+from solvers.tank.pose import AT_START
 
 SOLVED = 3  # times at most: once, and again while wall particles begin or cease to push
-OF_LOAD = ("y", "z", "turn")
 
 
 @ti.data_oriented
@@ -32,7 +32,8 @@ class FreeBodyCoupling(Term):
     the step before, a body that displaces more than it weighs would be thrown about at once (Causin, Gerbeau & Nobile
     2005). The forces themselves are those of pairs, as everywhere (`WallForces`), so that the body gains what the water
     loses; what is found here is the acceleration that they will have, to rounding. Viscous forces, which do not depend
-    on a, are taken from the step before.
+    on a, are taken from the step before. In space M has the inertia tensor, and the body needs a moment ω × I ω to go
+    on turning as it does. The system is solved by elimination without pivots, which M + A, near to a mass, bears.
 
     Limits: in water of one phase; bodies answer each other only through the water's motion.
     """
@@ -60,14 +61,17 @@ class FreeBodyCoupling(Term):
         self.thickness = own.holding("thickness", np.array([thickness]), "one", own.exact)
         each = Axis("block", p.worlds * self.bodies.room), Axis("lane", p.lanes)
         (self.still,) = own.wide(each, "still", kept=False)  # the pressure p0 at a = 0, cut off nowhere; Pa
-        self.lever = own.wide(each, *(f"lever_{name}" for name in OF_LOAD), kept=False)
-        self.push = own.wide(each, *(f"push_{name}" for name in OF_LOAD), kept=False)  # the load of 1 Pa
-        self.fixed = own.wide(each, *(f"fixed_{name}" for name in OF_LOAD), kept=False)  # that of all else
-        of_body = Axis("world", p.worlds), Axis("body", self.free.count), Axis("freedom", 3)
+        self.axes, self.about, self.size = p.axes, turns(p.axes), p.axes + turns(p.axes)
+
+        def of_load(what: str) -> list[ti.Field]:
+            return own.wide(each, *named(what, p.axes), *named_turns(f"{what}_turn", p.axes), kept=False)
+
+        self.lever, self.push, self.fixed = map(of_load, ("lever", "push", "fixed"))  # of 1 Pa, and of all else
+        of_body = Axis("world", p.worlds), Axis("body", self.free.count), Axis("freedom", self.size)
         self.foreseen, self.solution = own.reals(of_body, "foreseen", "solution", kind=own.exact, kept=False)
         (self.rest,) = own.reals(of_body, "rest", kind=own.exact)
-        system = Axis("world", p.worlds), Axis("number", 12)
-        (self.system,) = own.reals(system, "system", kind=own.exact, kept=False)
+        system = Axis("world", p.worlds), Axis("number", self.size * (self.size + 1))  # A row by row, then F
+        self.system, self.reduced = own.reals(system, "system", "reduced", kind=own.exact, kept=False)
 
     @property
     def others(self) -> list[Load]:
@@ -106,31 +110,36 @@ class FreeBodyCoupling(Term):
         if i >= 0:
             arm = [p.offset(b, ti.cast(self.free.place[a][w, i], p.where), a) for a in ti.static(range(p.axes))]
             whole = [lever[a] for a in ti.static(range(p.axes))]
-            if ti.static(self.bodies.slips):
-                along = [p.load(self.bodies.along[a], row) for a in ti.static(range(p.axes))]
-                self.bodies.turn(b, along, AT_START)
-                slid = dot(whole, along)
+            if ti.static(self.bodies.acceleration.slips):
+                across = self.bodies.acceleration.across(b, row, whole)
                 for a in ti.static(range(p.axes)):
-                    whole[a] = whole[a] - slid * along[a]
+                    whole[a] = across[a]
             force = 0.0 - p.load(p.volume, b) * self.constants.get("slope")
             steep = self.leaning.steep(sums)
             straight = [force * steep[a] for a in ti.static(range(p.axes))]
-            turning = arm[0] * straight[1] - arm[1] * straight[0]
+            turning = moment(arm, straight)
             if ti.static(self.tangential.acts):
                 off = [(force * seen) * p.load(self.tangential.correction[a], b) for a in ti.static(range(p.axes))]
-                before = [sums[self.way + a] / ti.max(seen, 1e-30) for a in ti.static(range(p.axes))]
-                turning = turning - ((arm[0] - before[0]) * off[1] - (arm[1] - before[1]) * off[0])
+                before = [arm[a] - sums[self.way + a] / ti.max(seen, 1e-30) for a in ti.static(range(p.axes))]
+                turned_off = moment(before, off)
+                for k in ti.static(range(turns(p.axes))):
+                    turning[k] = turning[k] - turned_off[k]
                 for a in ti.static(range(p.axes)):
                     straight[a] = straight[a] - off[a]
             always = [force * sums[self.always + a] for a in ti.static(range(p.axes))]
             p.store(self.still, at, still)
-            for a in ti.static(range(p.axes)):
-                p.store(self.lever[a], at, whole[a])
-                p.store(self.push[a], at, straight[a])
-                p.store(self.fixed[a], at, always[a])
-            p.store(self.lever[2], at, arm[0] * whole[1] - arm[1] * whole[0])
-            p.store(self.push[2], at, turning)
-            p.store(self.fixed[2], at, arm[0] * always[1] - arm[1] * always[0])
+            self.store(at, whole, moment(arm, whole), self.lever)
+            self.store(at, straight, turning, self.push)
+            self.store(at, always, moment(arm, always), self.fixed)
+
+    @ti.func
+    def store(self, at, force: ti.template(), turning: ti.template(), fields: ti.template()):
+        """Store forces and moments of a block of wall particles."""
+        p = self.particles
+        for a in ti.static(range(p.axes)):
+            p.store(fields[a], at, force[a])
+        for k in ti.static(range(turns(p.axes))):
+            p.store(fields[p.axes + k], at, turning[k])
 
     @ti.func
     def solve(self, w, t, kick, dt):
@@ -152,8 +161,9 @@ class FreeBodyCoupling(Term):
     @ti.func
     def begin_solution(self, w, i):
         """Begin with the acceleration of the last step."""
-        for k in ti.static(range(3)):
-            self.solution[w, i, k] = self.free.acceleration[k][w, i]
+        last = self.free.gains(w, i)
+        for k in ti.static(range(self.size)):
+            self.solution[w, i, k] = last[k]
 
     @ti.func
     def sum_up(self, w, i, first):
@@ -162,69 +172,101 @@ class FreeBodyCoupling(Term):
         Their pressures become those at the solution. `first`: nothing is known of which pushed before.
         """
         p, part = self.particles, self.free.part_of[i]
-        total = ti.Vector([ti.cast(0.0, self.free.exact) for _ in ti.static(range(12))])
-        a = [ti.cast(self.solution[w, i, k], p.real) for k in ti.static(range(3))]
+        for k in range(self.size * (self.size + 1)):
+            self.system[w, k] = 0.0
+        a = [ti.cast(self.solution[w, i, k], p.real) for k in ti.static(range(self.size))]
         others = ti.cast(0.0, p.real)  # how many push that did not before, or the reverse
         for row in range(self.bodies.ends[part], self.bodies.ends[part + 1]):
             b, at = w * p.stride + p.fluid_blocks + self.bodies.first[0] + row, w * self.bodies.room + row
-            lever = [p.load(self.lever[k], at) for k in ti.static(range(3))]
-            push = [p.load(self.push[k], at) for k in ti.static(range(3))]
+            lever = [p.load(self.lever[k], at) for k in ti.static(range(self.size))]
+            push = [p.load(self.push[k], at) for k in ti.static(range(self.size))]
             still, before = p.load(self.still, at), p.load(p.pressure, b)
-            pressure = still - (lever[0] * a[0] + lever[1] * a[1] + lever[2] * a[2])
+            pressure = still - dot(lever, a)
             pushes = p.ones()
             if ti.static(not self.constants.full):
                 pushes = ti.select(pressure > 0.0, p.ones(), p.zeros())
                 other = pushes - ti.select(before > 0.0, p.ones(), p.zeros())
                 others += (other * other).sum()
             p.store(p.pressure, b, pushes * pressure)
-            for k in ti.static(range(3)):
+            for k in ti.static(range(self.size)):
                 held = pushes * push[k]
-                for n in ti.static(range(3)):
-                    total[3 * k + n] += ti.cast((held * lever[n]).sum(), self.free.exact)
-                total[9 + k] += ti.cast((held * still + p.load(self.fixed[k], at)).sum(), self.free.exact)
-        for k in ti.static(range(12)):
-            self.system[w, k] = total[k] * self.thickness[0]
+                for n in ti.static(range(self.size)):
+                    self.add_to(w, self.size * k + n, (held * lever[n]).sum())
+                self.add_to(w, self.size * self.size + k, (held * still + p.load(self.fixed[k], at)).sum())
         return first or others > 0.5
+
+    @ti.func
+    def add_to(self, w, number: ti.template(), value):
+        """Add to a number of a world's system."""
+        self.system[w, number] = self.system[w, number] + self.thickness[0] * ti.cast(value, self.free.exact)
 
     @ti.func
     def accelerate(self, w, i):
         """Solve for the acceleration of a body from the sums of `sum_up`."""
-        rest = ti.Vector([self.rest[w, i, k] for k in ti.static(range(3))])
+        rest = ti.Vector([self.rest[w, i, k] for k in ti.static(range(self.size))])
         for m in ti.static(range(len(self.others))):
             rest += self.free.borne(w, i, self.others[m])
-        mass, inertia = self.free.table[i, MASS], self.free.table[i, INERTIA]
-        whole = ti.Matrix.zero(self.free.exact, 3, 3)
-        for k in ti.static(range(3)):
-            for n in ti.static(range(3)):
-                whole[k, n] = self.system[w, 3 * k + n]
-            whole[k, k] += inertia if ti.static(k == 2) else mass
-        f = ti.Vector([self.system[w, 9 + k] + rest[k] for k in ti.static(range(3))])
-        f[0] += mass * self.poses.felt[0][w]
-        f[1] += mass * self.poses.felt[1][w]
-        found = whole.inverse() @ f
-        for k in ti.static(range(3)):
-            self.solution[w, i, k] = found[k]
+        mass, tensor, gyration = self.free.mass(i), self.free.tensor(w, i), self.free.gyration(w, i)
+        for a in ti.static(range(self.axes)):
+            rest[a] += mass * self.poses.felt[a][w]
+        for k in range(self.size * (self.size + 1)):
+            self.reduced[w, k] = self.system[w, k]
+        for k in ti.static(range(self.about)):
+            rest[self.axes + k] -= gyration[k]
+            for n in ti.static(range(self.about)):
+                at = self.size * (self.axes + k) + self.axes + n
+                self.reduced[w, at] = self.reduced[w, at] + tensor[self.about * k + n]
+        for k in ti.static(range(self.size)):
+            at = self.size * self.size + k
+            self.reduced[w, at] = self.reduced[w, at] + rest[k]
+            if ti.static(k < self.axes):
+                self.reduced[w, (self.size + 1) * k] = self.reduced[w, (self.size + 1) * k] + mass
+        self.eliminate(w)
+        for k in ti.static(range(self.size)):
+            self.solution[w, i, k] = self.reduced[w, self.size * self.size + k]
+
+    @ti.func
+    def eliminate(self, w):
+        """Solve the system of a world by Gauss's elimination, in the place of its right side."""
+        size, right = self.size, self.size * self.size
+        r = ti.static(self.reduced)
+        for k in range(size):
+            for row in range(k + 1, size):
+                share = r[w, size * row + k] / r[w, (size + 1) * k]
+                for n in range(k + 1, size):
+                    r[w, size * row + n] = r[w, size * row + n] - share * r[w, size * k + n]
+                r[w, right + row] = r[w, right + row] - share * r[w, right + k]
+        for back in range(size):
+            row = size - 1 - back
+            for n in range(row + 1, size):
+                r[w, right + row] = r[w, right + row] - r[w, size * row + n] * r[w, right + n]
+            r[w, right + row] = r[w, right + row] / r[w, (size + 1) * row]
 
     @ti.func
     def carry(self, w, i):
         """Give a body, and its wall particles, the velocities (m/s) that it has at the start with the solution."""
         p, part = self.particles, self.free.part_of[i]
-        u = self.free.velocity_with(w, i, ti.Vector([self.solution[w, i, k] for k in ti.static(range(3))]))
-        self.free.note_pose(w, i, AT_START, 3, u)
-        rate = ti.cast(u[2], p.real)
+        u = self.free.velocity_with(w, i, ti.Vector([self.solution[w, i, k] for k in ti.static(range(self.size))]))
+        self.free.note_pose(w, i, AT_START, AT_START, u)
+        rate = [ti.cast(u[self.particles.axes + k], p.real) for k in ti.static(range(turns(self.particles.axes)))]
         for row in range(self.bodies.ends[part], self.bodies.ends[part + 1]):
             b = w * p.stride + p.fluid_blocks + self.bodies.first[0] + row
-            arm = [p.offset(b, ti.cast(self.free.place[a][w, i], p.where), a) for a in ti.static(range(p.axes))]
-            p.store(p.velocity[0], b, ti.cast(u[0], p.real) - rate * arm[1])
-            p.store(p.velocity[1], b, ti.cast(u[1], p.real) + rate * arm[0])
+            arm = [
+                p.offset(b, ti.cast(self.free.place[a][w, i], p.where), a)
+                for a in ti.static(range(self.particles.axes))
+            ]
+            speed = [p.ones() * ti.cast(u[a], p.real) for a in ti.static(range(self.particles.axes))]
+            swing(rate, arm, speed)
+            for a in ti.static(range(self.particles.axes)):
+                p.store(p.velocity[a], b, speed[a])
 
     @ti.func
     def foresee(self, w, i):
         """Note the load by pressure that the solution has."""
-        for k in ti.static(range(3)):
-            load = self.system[w, 9 + k]
-            for n in ti.static(range(3)):
-                load -= self.system[w, 3 * k + n] * self.solution[w, i, n]
+        for k in ti.static(range(self.size)):
+            load = self.system[w, self.size * self.size + k]
+            for n in ti.static(range(self.size)):
+                load -= self.system[w, self.size * k + n] * self.solution[w, i, n]
             self.foreseen[w, i, k] = load
 
     @ti.func
@@ -233,5 +275,5 @@ class FreeBodyCoupling(Term):
         for i in range(self.free.count):
             if self.free.state[w, i] != HELD:
                 load = self.free.about_centre(w, i, self.load.on_piece(w, self.free.first + self.free.part_of[i]))
-                for k in ti.static(range(3)):
+                for k in ti.static(range(self.size)):
                     self.rest[w, i, k] = load[k] - self.foreseen[w, i, k]

@@ -3,20 +3,34 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.bodies.hull_tables import (
+    A_Y,
+    A_Z,
+    BLEND,
+    CENTRE,
+    HALF,
+    OPENS,
+    PLACE,
+    RADIUS,
+    SHARP,
+    SLANT,
+    WAY_Y,
+    WAY_Z,
+    WIDE,
+    circle,
+    edges,
+    hole,
+)
 from solvers.fluid.bodies.solids import Solids, rooms_of
 from solvers.fluid.given import Water
 from solvers.fluid.state import UNUSED, Particles
+from solvers.machine.quantity import PLANE
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.poses import Poses
-from solvers.space.axes import dot
-from solvers.tank.parts import Hull, Opening
-from solvers.tank.pieces import COSINE, RATE, SINE, V_Y, V_Z, Pieces, Y, Z
-from solvers.tank.tank import Tank
-
-A_Y, A_Z, WAY_Y, WAY_Z, SLANT = range(5)  # an edge of a room: where it begins (m), the way to its end, dy/dz
-CENTRE_Y, CENTRE_Z, RADIUS, HALF = range(4)  # of a room: a circle that holds it and its wall (m), half its wall
-# Of an opening: time (s), its line (m), half the blend of χ, one over the length (m) over which its ends fade
-OPENS, START_Y, START_Z, ALONG_Y, ALONG_Z, LENGTH, BLEND, SHARP = range(8)
+from solvers.space.axes import dot, swing, turns
+from solvers.tank.pieces import Pieces
+from solvers.tank.pose import AT_START, rotated, turned_back
+from solvers.tank.shapes import PrismShape
 
 
 @ti.data_oriented
@@ -28,9 +42,10 @@ class Hulls:
     1 − ½ Σ |χ_ri − χ_rj|, summed over the rooms and what is outside of all. Wall particles stand in two families, one
     behind each face of a wall and each with the χ of the room before it, and go on through the wall and beyond: so the
     wall may be thinner than the kernel's reach (own derivation). Water that sees water through an opening counts
-    wholly, and within a smoothing length of its ends in part; so much less count there the wall particles that stand
+    wholly, and within a smoothing length of its rim in part; so much less count there the wall particles that stand
     beyond the wall, so that all shares are 1 together. All sums have the same shares, and pairs of forces stay equal
-    and opposite. Where an opening is, wall particles stand for its cover until it opens.
+    and opposite. Where an opening is, wall particles stand for its cover until it opens. In space rooms are prisms
+    along x, and openings are round.
 
     Limits: walls of half a spacing at least; the rim of an opening is rounded over the wall's thickness, as each family
     sees there half of the water.
@@ -38,25 +53,26 @@ class Hulls:
 
     def __init__(self, arrays: State, pieces: Pieces, solids: Solids, water: Water, spared: int):
         parts = pieces.parts
-        self.pieces, self.solids, self.lanes = pieces, solids, solids.places.shape[1]
-        rooms = [(k, corners) for k in range(len(parts)) for _, corners in rooms_of(parts, k)]
+        self.pieces, self.solids, self.lanes, self.axes = pieces, solids, solids.places.shape[1], pieces.axes
+        rooms = [(k, room) for k in range(len(parts)) for _, room in rooms_of(parts, k)]
         self.owners, self.count = [k for k, _ in rooms], len(rooms)
         holes = [(k, *opening) for k, of_part in enumerate(solids.openings) for opening in of_part]
         self.hole_owners, self.openings = [k for k, *_ in holes], len(holes)
         if not rooms:
             return
         self.exact, own = arrays.exact, arrays.under("hulls")
-        self.ends = np.cumsum([0, *(len(corners) for _, corners in rooms)]).tolist()
-        self.edges = own.holding("edges", np.concatenate([edges(corners) for _, corners in rooms]), "edge number")
-        circles = [circle(corners, parts[k].hull.wall) for k, corners in rooms]
+        sections = [room.polygon if isinstance(room, PrismShape) else room for _, room in rooms]
+        self.ends = np.cumsum([0, *(len(corners) for corners in sections)]).tolist()
+        self.edges = own.holding("edges", np.concatenate([edges(corners) for corners in sections]), "edge number")
+        circles = [circle(room, parts[k].hull.wall) for k, room in rooms]
         self.circles = own.holding("rooms", np.array(circles), "room number")
         self.rows = roomy(len(solids.places), spared)
         self.used = own.holding("used", np.array([len(solids.places)]), "one", ti.i32)
         self.hole = own.holding("hole", padded(solids.holes, self.rows), "row lane", ti.i32)
         self.beyond = own.holding("beyond", padded(solids.beyond.astype(float), self.rows), "row lane")
         if holes:
-            lines = np.array([line(opening, parts[k].hull, water.length) for k, _, opening, _ in holes])
-            self.lines = own.holding("openings", lines, "opening number", own.exact)
+            numbers = [hole(opening, parts[k].hull, water.length, self.axes) for k, _, opening, _ in holes]
+            self.holes = own.holding("openings", np.array(numbers), "opening number", own.exact)
             (self.open,) = own.integers((Axis("world", pieces.worlds), Axis("opening", len(holes))), "open")
 
     def join(self, arrays: State, particles: Particles, poses: Poses, first: ti.Field) -> None:
@@ -88,7 +104,7 @@ class Hulls:
         p = self.particles
         for n in range(self.openings):
             if self.open[w, n] == 0:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
-                if t >= self.lines[n, OPENS]:
+                if t >= self.holes[n, OPENS]:
                     self.open[w, n] = 1
                     for row in range(self.used[0]):
                         b = w * p.stride + p.fluid_blocks + self.first[0] + row
@@ -102,12 +118,8 @@ class Hulls:
         p, w = self.particles, b // self.particles.stride
         for r in ti.static(range(self.count)):
             k = ti.static(self.owners[r])
-            cos, sin = self.pieces.poses[w, k, COSINE], self.pieces.poses[w, k, SINE]
-            o_y, o_z = self.pieces.poses[w, k, Y], self.pieces.poses[w, k, Z]
-            y, z = p.offset(b, ti.cast(o_y, p.where), 0), p.offset(b, ti.cast(o_z, p.where), 1)
-            c, s = ti.cast(cos, p.real), ti.cast(sin, p.real)
-            drawn = [c * y + s * z, c * z - s * y]
-            off = [drawn[0] - self.circles[r, CENTRE_Y], drawn[1] - self.circles[r, CENTRE_Z]]
+            drawn = self.drawn(w, k, b)
+            off = [drawn[a] - self.circles[r, CENTRE + a] for a in ti.static(range(self.axes))]
             far, near = self.circles[r, RADIUS], p.zeros()
             near = ti.select(dot(off, off) < far * far, p.ones(), near)
             found = p.zeros()
@@ -118,6 +130,19 @@ class Hulls:
             p.store(self.within[r], b, found)
 
     @ti.func
+    def drawn(self, w, k: ti.template(), b):
+        """Where the particles of a block are (m), as part k is drawn."""
+        p, origin = self.particles, self.pieces.pose.origin(w, k, AT_START)
+        off = [p.offset(b, ti.cast(origin[a], p.where), a) for a in ti.static(range(self.axes))]
+        return turned_back(self.rotation(w, k), off)
+
+    @ti.func
+    def rotation(self, w, k: ti.template()):
+        """How part k is turned as the step begins, in the numbers of the particles."""
+        found = self.pieces.pose.rotation(w, k, AT_START)
+        return [ti.cast(found[n], self.particles.real) for n in ti.static(range(len(found)))]
+
+    @ti.func
     def distance(self, r: ti.template(), place: ti.template()):
         """The signed distances (m) of places, as drawn, from a room, negative in it."""
         p = self.particles
@@ -126,13 +151,19 @@ class Hulls:
             way = [self.edges[e, WAY_Y], self.edges[e, WAY_Z]]
             off = [place[0] - self.edges[e, A_Y], place[1] - self.edges[e, A_Z]]
             share = ti.max(0.0, ti.min(1.0, dot(off, way) * (1.0 / dot(way, way))))
-            apart = [off[a] - share * way[a] for a in ti.static(range(p.axes))]
+            apart = [off[a] - share * way[a] for a in ti.static(range(PLANE))]
             square = ti.min(square, dot(apart, apart))
             # By the even–odd rule: how often the line from a place to the left crosses an edge.
             ends = ti.select(off[1] > 0.0, p.ones(), p.zeros()) - ti.select(off[1] > way[1], p.ones(), p.zeros())
             crosses = ends * ends * ti.select(off[0] < off[1] * self.edges[e, SLANT], p.ones(), p.zeros())
             inside = inside + crosses - 2.0 * inside * crosses
-        return ti.sqrt(square) * (1.0 - 2.0 * inside)
+        found = ti.sqrt(square) * (1.0 - 2.0 * inside)
+        if ti.static(self.axes > PLANE):  # a prism's, of that of its section and of its ends
+            off = place[PLANE] - self.circles[r, CENTRE + self.axes + 1]
+            beyond = ti.max(off, 0.0 - off) - self.circles[r, CENTRE + self.axes]
+            out = [ti.max(found, 0.0), ti.max(beyond, 0.0)]
+            found = ti.sqrt(dot(out, out)) + ti.min(ti.max(found, beyond), 0.0)
+        return found
 
     @ti.func
     def share(self, b, jb, lane, place: ti.template(), apart: ti.template()):
@@ -181,24 +212,25 @@ class Hulls:
         p, k = self.particles, ti.static(self.hole_owners[n])
         found = none
         if self.open[w, n] == 1:
-            c = ti.cast(self.pieces.poses[w, k, COSINE], p.real)
-            s = ti.cast(self.pieces.poses[w, k, SINE], p.real)
-            t = [ti.cast(self.lines[n, ALONG_Y], p.real), ti.cast(self.lines[n, ALONG_Z], p.real)]
-            along = [c * t[0] - s * t[1], s * t[0] + c * t[1]]
-            o = [ti.cast(self.pieces.poses[w, k, Y + a], p.real) for a in ti.static(range(2))]
-            start = [ti.cast(self.lines[n, START_Y], p.real), ti.cast(self.lines[n, START_Z], p.real)]
-            off = [place[0] - o[0] - (c * start[0] - s * start[1]), place[1] - o[1] - (s * start[0] + c * start[1])]
-            beyond = apart[1] * along[0] - apart[0] * along[1]
-            across = off[1] * along[0] - off[0] * along[1]
+            rotation, origin = self.rotation(w, k), self.pieces.pose.origin(w, k, AT_START)
+            normal, middle = rotated(rotation, self.of_hole(n, self.axes)), rotated(rotation, self.of_hole(n, 0))
+            off = [place[a] - ti.cast(origin[a], p.real) - middle[a] for a in ti.static(range(self.axes))]
+            beyond, across = dot(apart, normal), dot(off, normal)
             least = ti.select(beyond * beyond > 1e-30, beyond, all_of)
             share = ti.max(0.0, ti.min(1.0, (0.0 - across) / least))
-            way = dot(off, along) + share * dot(apart, along)
-            sharp, length = ti.cast(self.lines[n, SHARP], p.real), ti.cast(self.lines[n, LENGTH], p.real)
-            deep = ti.max(0.0, ti.min(1.0, ti.min(way, length - way) * sharp + 1.0))
-            off_middle, half = across + share * beyond, ti.cast(self.lines[n, BLEND], p.real)
+            off_middle = across + share * beyond
+            aside = [off[a] + share * apart[a] - off_middle * normal[a] for a in ti.static(range(self.axes))]
+            inside = ti.cast(self.holes[n, WIDE], p.real) - ti.sqrt(dot(aside, aside))  # of the rim
+            deep = ti.max(0.0, ti.min(1.0, inside * ti.cast(self.holes[n, SHARP], p.real) + 1.0))
+            half = ti.cast(self.holes[n, BLEND], p.real)
             near = ti.select(off_middle * off_middle < half * half, all_of, none)
             found = near * (deep * deep * (3.0 - 2.0 * deep))
         return found
+
+    @ti.func
+    def of_hole(self, n: ti.template(), first: ti.template()):
+        """The middle (m) of an opening as drawn (first: 0), or the normal of the wall there (first: the axes)."""
+        return [ti.cast(self.holes[n, PLACE + first + a], self.particles.real) for a in ti.static(range(self.axes))]
 
     @ti.kernel
     def sum_up(self, time: ti.f64):
@@ -226,31 +258,32 @@ class Hulls:
     @ti.func
     def flow(self, w, n: ti.template(), b, lane):
         """The speed (m/s) of a particle through an opening, over the length (m) of the passage; 0 outside of it."""
-        p, k = self.particles, ti.static(self.hole_owners[n])
-        cos, sin = self.pieces.poses[w, k, COSINE], self.pieces.poses[w, k, SINE]
-        y = ti.cast(p.place[0][b, lane], self.exact) - self.pieces.poses[w, k, Y]
-        z = ti.cast(p.place[1][b, lane], self.exact) - self.pieces.poses[w, k, Z]
-        off = [cos * y + sin * z - self.lines[n, START_Y], cos * z - sin * y - self.lines[n, START_Z]]
-        along = [self.lines[n, ALONG_Y], self.lines[n, ALONG_Z]]
-        way, across = dot(off, along), off[1] * along[0] - off[0] * along[1]
-        found = ti.cast(0.0, self.exact)
-        if 0.0 < way < self.lines[n, LENGTH] and -self.lines[n, BLEND] < across < self.lines[n, BLEND]:
-            tank = self.tank_speed(w, y + self.pieces.poses[w, k, Y], z + self.pieces.poses[w, k, Z])
-            rate = self.pieces.poses[w, k, RATE]
-            u_y = ti.cast(p.velocity[0][b, lane], self.exact) - tank[0] - (self.pieces.poses[w, k, V_Y] - rate * z)
-            u_z = ti.cast(p.velocity[1][b, lane], self.exact) - tank[1] - (self.pieces.poses[w, k, V_Z] + rate * y)
-            own = [cos * u_y + sin * u_z, cos * u_z - sin * u_y]
-            found = (own[1] * along[0] - own[0] * along[1]) / (2.0 * self.lines[n, BLEND])
+        p, k, pose = self.particles, ti.static(self.hole_owners[n]), self.pieces.pose
+        rotation, origin = pose.rotation(w, k, AT_START), pose.origin(w, k, AT_START)
+        at = [ti.cast(p.place[a][b, lane], self.exact) for a in ti.static(range(self.axes))]
+        arm = [at[a] - origin[a] for a in ti.static(range(self.axes))]
+        drawn, found = turned_back(rotation, arm), ti.cast(0.0, self.exact)
+        off = [drawn[a] - self.holes[n, PLACE + a] for a in ti.static(range(self.axes))]
+        normal = [self.holes[n, PLACE + self.axes + a] for a in ti.static(range(self.axes))]
+        across = dot(off, normal)
+        aside = [off[a] - across * normal[a] for a in ti.static(range(self.axes))]
+        inside = dot(aside, aside) < self.holes[n, WIDE] * self.holes[n, WIDE]
+        if inside and -self.holes[n, BLEND] < across < self.holes[n, BLEND]:
+            speed, tank = pose.velocity(w, k, AT_START), self.tank_speed(w, at)
+            swing(pose.rate(w, k, AT_START), arm, speed)
+            u = [ti.cast(p.velocity[a][b, lane], self.exact) - tank[a] - speed[a] for a in ti.static(range(self.axes))]
+            found = dot(turned_back(rotation, u), normal) / (2.0 * self.holes[n, BLEND])
         return found
 
     @ti.func
-    def tank_speed(self, w, y, z):
+    def tank_speed(self, w, at: ti.template()):
         """The velocity (m/s) of the tank's wall at a place, in its axes."""
-        found = [ti.cast(0.0, self.exact), ti.cast(0.0, self.exact)]
+        found = [ti.cast(0.0, self.exact) for _ in ti.static(range(self.axes))]
         if ti.static(self.of_tank.moving):
-            rate = self.of_tank.walls[5][w]
-            found[0] += self.of_tank.walls[3][w] - rate * z
-            found[1] += self.of_tank.walls[4][w] + rate * y
+            walls = self.of_tank.of_walls(w, AT_START)
+            for a in ti.static(range(self.axes)):
+                found[a] += walls[a]
+            swing([walls[self.axes + k] for k in ti.static(range(turns(self.axes)))], at, found)
         return found
 
     def observe(self, time: float, thickness: float) -> dict[str, np.ndarray]:
@@ -261,33 +294,3 @@ class Hulls:
         sums = thickness * self.sums.to_numpy().astype(float)
         flows = {"opening_flow": sums[:, self.count :]} if self.openings else {}
         return {"room_water": sums[:, : self.count], **flows}
-
-
-def edges(corners: np.ndarray) -> np.ndarray:
-    """The edges (m, 5) of a room."""
-    way = np.roll(corners, -1, axis=0) - corners
-    level = way[:, 1] == 0.0
-    slant = np.where(level, 0.0, way[:, 0] / np.where(level, 1.0, way[:, 1]))
-    return np.column_stack([corners, way, slant])
-
-
-def circle(corners: np.ndarray, wall: float) -> list[float]:
-    """The numbers of a room: a circle that holds it and its wall, and half of that."""
-    centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    radius = float(np.linalg.norm(corners - centre, axis=1).max()) + wall
-    return [*centre.tolist(), radius, 0.5 * wall]
-
-
-def line(opening: Opening, hull: Hull, fades: float) -> list[float]:
-    """The numbers of an opening. Its line runs so that the room behind it, the later one of two, is on the left."""
-    start, end = np.array(opening.ends)
-    length = float(np.hypot(*(end - start)))
-    along = (end - start) / length
-    middle, across = 0.5 * (start + end), hull.wall * np.array([-along[1], along[0]])
-    left, right = (
-        max((k for k, room in enumerate(hull.rooms) if Tank(np.array(room), 1.0).holds(side[None])[0]), default=-1)
-        for side in (middle + across, middle - across)
-    )
-    if left < right:
-        start, along = end, -along
-    return [opening.opens, *start.tolist(), *along.tolist(), length, 0.5 * hull.wall, 1.0 / fades]

@@ -9,6 +9,7 @@ from solvers.fluid.given import Water
 from solvers.fluid.state import FAR, UNUSED
 from solvers.fluid.walls.layers import deep, faces, firm, layers, offset_from, sharp, straight
 from solvers.tank.parts import Opening, Part
+from solvers.tank.shapes import PrismShape
 
 TOUCHES = 0.25  # spacings between a plate's end and a wall or a part from which on no water passes between them
 STRIP = 4.0  # spacings: height of the strips by which the wall particles of a body are cut into blocks
@@ -170,11 +171,14 @@ def behind(
     return points, volumes, depths, along, away, slides, off, seen_from, holes
 
 
-def rooms_of(parts: Sequence[Part], k: int) -> list[tuple[int, np.ndarray]]:
-    """The rooms of part k, if it is a hull, by their numbers among those of all parts, from 1 on: corners (m, 2) m."""
+def rooms_of(parts: Sequence[Part], k: int) -> list[tuple[int, np.ndarray | PrismShape]]:
+    """The rooms of part k, if it is a hull, by their numbers among those of all parts, from 1 on.
+
+    Of each the corners (m, 2) m, or in space the prism.
+    """
     before = sum(len(part.hull.rooms) for part in parts[:k] if part.hull)
-    rooms = parts[k].hull.rooms if parts[k].hull else ()
-    return [(number, counter_clockwise(room)) for number, room in enumerate(rooms, start=before + 1)]
+    rooms = enumerate(parts[k].hull.rooms if parts[k].hull else (), start=before + 1)
+    return [(number, room if isinstance(room, PrismShape) else counter_clockwise(room)) for number, room in rooms]
 
 
 def openings_of(parts: Sequence[Part]) -> list[list[tuple[int, Opening, float]]]:
@@ -188,10 +192,8 @@ def openings_of(parts: Sequence[Part]) -> list[list[tuple[int, Opening, float]]]
 
 
 def in_opening(points: np.ndarray, opening: Opening, wall: float) -> np.ndarray:
-    """Which points (n, 2) m on the faces of a wall of this thickness (m) lie where an opening leads through it."""
-    start, end = np.array(opening.ends)
-    length = float(np.hypot(*(end - start)))
-    along = (end - start) / length
-    off = points - start
-    way, across = off @ along, off[:, 1] * along[0] - off[:, 0] * along[1]
-    return (way > 0.0) & (way < length) & (np.abs(across) < 1.01 * wall)
+    """Which points (n, 2) m, or (n, 3), on the faces of a wall of this thickness (m) an opening leads through."""
+    middle, normal, half = opening.place(points.shape[1])
+    off = points - middle
+    across = off @ normal
+    return (np.linalg.norm(off - across[:, None] * normal, axis=1) < half) & (np.abs(across) < 1.01 * wall)

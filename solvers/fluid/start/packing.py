@@ -99,33 +99,37 @@ def scattered(polygon: np.ndarray, holes: Sequence[np.ndarray], count: int) -> n
     return found[np.lexsort((found[:, 0], strip))]
 
 
-def relax(crowd: "Crowd", spacing: float, pace: float) -> int:
+def relax(crowd: "Crowd", spacing: float, pace: float, most: int = STEPS) -> int:
     """Let the particles of a crowd push each other apart until they are EVEN, by steps of a `pace`; returns how many.
 
+    At `most` so many.
     Velocities begin anew where the forces work against them (as of quick min, Sheppard, Terrell & Henkelman 2008).
     """
     velocity = np.zeros_like(crowd.points)
-    for step in range(STEPS):
+    for step in range(most):
         push = spacing * crowd.pushes()
-        if np.hypot(*push.T).max() < EVEN:
+        if np.hypot.reduce(push.T).max() < EVEN:
             return step
         velocity = (1.0 - DRAG) * velocity + pace * push
         if (velocity * push).sum() < 0.0:
             velocity[:] = 0.0
         way = pace * velocity
-        crowd.move(spacing * way * min(1.0, FARTHEST / max(np.hypot(*way.T).max(), FARTHEST)))
-    return STEPS
+        crowd.move(spacing * way * min(1.0, FARTHEST / max(np.hypot.reduce(way.T).max(), FARTHEST)))
+    return most
 
 
 class Crowd:
-    """Particles at `points` (n, 2) m of one `volume` (m²) among fixed `walls` (k, 2) m of `volumes` (k,) m²."""
+    """Particles at `points` (n, 2) m of one `volume` (m²) among fixed `walls` (k, 2) m of `volumes` (k,) m².
+
+    In space they have three coordinates, and volumes are in m³.
+    """
 
     def __init__(self, points: np.ndarray, volume: float, walls: np.ndarray, volumes: np.ndarray, length: float):
-        self.points, self.volume, self.length = points, volume, length
+        self.points, self.volume, self.length, self.axes = points, volume, length, points.shape[1]
         from scipy.spatial import cKDTree  # here, so that runs without water do not wait for it
 
         self.make_tree = cKDTree
-        self.walls, self.volumes, self.tree = walls, volumes, cKDTree(walls)
+        self.walls, self.volumes = walls, volumes
         self.look(SKIN * length)
 
     def look(self, skin: float) -> None:
@@ -133,7 +137,7 @@ class Crowd:
         reach, self.skin, self.seen = 2.0 * self.length + skin, skin, self.points.copy()
         tree = self.make_tree(self.points)
         self.first, self.second = tree.query_pairs(reach, output_type="ndarray").T
-        near = tree.sparse_distance_matrix(self.tree, reach, output_type="ndarray")
+        near = tree.sparse_distance_matrix(self.make_tree(self.walls), reach, output_type="ndarray")
         order = np.lexsort((near["j"], near["i"]))  # sums are taken in one order
         self.wet, self.dry = near["i"][order], near["j"][order]
         self.share = self.volumes[self.dry]
@@ -141,7 +145,7 @@ class Crowd:
     def move(self, way: np.ndarray) -> None:
         """Move the particles by (n, 2) m."""
         self.points = self.points + way
-        if 2.0 * np.hypot(*(self.points - self.seen).T).max() > self.skin:
+        if 2.0 * np.hypot.reduce((self.points - self.seen).T).max() > self.skin:
             self.look(self.skin)
 
     def pairs(self) -> tuple[tuple[list[np.ndarray], np.ndarray], tuple[list[np.ndarray], np.ndarray]]:
@@ -151,18 +155,18 @@ class Crowd:
             apart = [
                 mine[ours] - their[theirs] for mine, their in zip(columns(self.points), columns(others), strict=True)
             ]
-            distance = np.sqrt(apart[0] * apart[0] + apart[1] * apart[1])
+            distance = np.sqrt(sum(along * along for along in apart))
             found.append((apart, np.maximum(1.0 - distance * (0.5 / self.length), 0.0)))
         return found[0], found[1]
 
     def pushes(self) -> np.ndarray:
         """−Σ V ∇W (n, 2), 1/m, of each particle."""
         (inner, t), (outer, t_outer) = self.pairs()
-        factor, count = WendlandC2.factors(self.length)[1], len(self.points)
+        factor, count = WendlandC2.factors(self.length, self.axes)[1], len(self.points)
         weight, weight_outer = factor * self.volume * (t * t * t), self.share * (factor * (t_outer * t_outer * t_outer))
         weight, weight_outer = self.parted(weight, weight_outer)
         found = np.empty_like(self.points)
-        for a in range(2):
+        for a in range(self.axes):
             push = weight * inner[a]
             found[:, a] = np.bincount(self.first, push, count) - np.bincount(self.second, push, count)
             found[:, a] += np.bincount(self.wet, weight_outer * outer[a], count)
@@ -170,8 +174,10 @@ class Crowd:
 
     def covers(self) -> np.ndarray:
         """Γ = Σ V W (n,) of each particle, itself included."""
-        inner, outer = (WendlandC2.printed(2.0 * self.length * (1.0 - t), self.length) for _, t in self.pairs())
-        count, alone = len(self.points), WendlandC2.factors(self.length)[0]
+        inner, outer = (
+            WendlandC2.printed(2.0 * self.length * (1.0 - t), self.length, self.axes) for _, t in self.pairs()
+        )
+        count, alone = len(self.points), WendlandC2.factors(self.length, self.axes)[0]
         inner, outer = self.parted(inner, self.share * outer)
         each = np.bincount(self.first, inner, count) + np.bincount(self.second, inner, count) + alone
         return self.volume * each + np.bincount(self.wet, outer, count)

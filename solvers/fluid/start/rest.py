@@ -9,6 +9,7 @@ from solvers.fluid.phases.reduced_pressure import ReducedPressure
 from solvers.fluid.start.lattice import lattice, lattice_in_space
 from solvers.fluid.start.packing import packed
 from solvers.fluid.start.plates import packed_beside
+from solvers.fluid.start.round_bodies import packed_round
 from solvers.fluid.states.tait import GAMMA
 from solvers.tank.parts import Part
 
@@ -54,13 +55,15 @@ def at_rest(
     """The particles (n,) of water at rest in a polygon up to a level (m).
 
     Beside `parts` in a tank with this `outline` (m, 2) m they are packed, see `packed_beside`. In space the polygon is
-    the section of a prism, `along` (m) long, and they are a lattice.
+    the section of a prism, `along` (m) long, and they are a lattice, packed near parts, see `packed_round`.
 
     Each has the volume that it takes, so that its mass ρ0 (1 + s) V is that of the compressed water: with equal masses
     the level would sink by g H²/(2 c0²). With ρ0 as of `uncompressed` level and mass are both those of incompressible
     water. Raises ValueError if no particle fits in.
     """
-    if parts:
+    if parts and along is not None:
+        points, volume = packed_round(polygon, level, water, parts, along)
+    elif parts:
         packing = packed_beside(polygon, level, water, parts, outline)
         points, volume = packing.points, packing.volume
     elif along is not None:

@@ -152,7 +152,7 @@ class Extrapolation:
             zero = ti.cast(0.0, p.where)
             self.poses.press(w, [p.offset(b, zero, a) for a in ti.static(range(p.axes))], felt)
         if ti.static(self.bodies.moving):
-            self.bodies.hold_back(w, b, felt)
+            self.bodies.acceleration.take_off(w, b, felt)
         return felt
 
     @ti.func

@@ -16,14 +16,14 @@ class PrismLayers(WallLayers):
     The layers round the outline are repeated along x, at equal distances of about a spacing, within the prism and
     beyond its ends; behind an end wall a lattice fills them up. `along`, `straight` and `sliding` (n, 3) are unit
     normals from the faces, `straight` zero near edges and corners, `sliding` zero near edges that point into the water.
-    A periodic prism has no ends.
+    `depths` (n,) m is how far their layers lie behind the faces. A periodic prism has no ends.
     """
 
     def __init__(self, water: Water, tank: Tank, solid: Prism):
         self.blocks, self.probes, self.open = 0, [], []
         self.points, self.volumes, self.firm = np.zeros((0, 3)), np.zeros(0), np.zeros(0)
         self.along = self.straight = self.sliding = np.zeros((0, 3))
-        self.edges = self.tanks = np.zeros(0, dtype=int)
+        self.edges, self.tanks, self.depths = np.zeros(0, dtype=int), np.zeros(0, dtype=int), np.zeros(0)
         if water.walls:
             self._lay(water, tank, solid)
 
@@ -51,7 +51,7 @@ class PrismLayers(WallLayers):
         self.straight = self.along * clear[:, None]
         self.straight[~behind_end] = straight(section, self.straight, tank.outline, reach)[~behind_end]
         self.sliding = straight(section, self.along, sharp(tank.outline), reach)
-        self.firm = firm(depths, water.spacing)
+        self.firm, self.depths = firm(depths, water.spacing), depths
         self.edges, self.tanks = edge_of(section, tank.outline), np.zeros(len(section), dtype=int)
         self.edges[behind_end] = OF_NONE
 

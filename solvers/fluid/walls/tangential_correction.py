@@ -53,7 +53,7 @@ class TangentialCorrection:
     the pushes of both walls bear each other; with part of them taken off, the pressure of 40 layers at rest between
     chamfers was off by 2 % of ρ g H, and a piston's waves were lower by a tenth. So a surface within 1.5 reaches of a
     corner, a wall of short edges, water beside air and full tanks, which have no `DivergenceCorrection`, are as they
-    were.
+    were. In space a body is not looked for: near another wall its wall particles do as if they were alone.
     """
 
     def __init__(
@@ -74,7 +74,8 @@ class TangentialCorrection:
                 for a, name in enumerate(named("along", p.axes))
             ]
             self.correction = own.wide(each, *named("correction", p.axes), kept=False)
-            if bodies.count:
+            self.looks = bodies.count > 0 and p.axes == PLANE  # for other walls
+            if self.looks:
                 off = np.zeros(len(layers.points))
                 for number, tank in enumerate(tanks):
                     mine = layers.tanks == number
@@ -97,7 +98,7 @@ class TangentialCorrection:
         if ti.static(self.bodies.moving):
             self.bodies.turn(b, along, AT_START)
         leans = dot(along, steep) / ti.max(seen, 1e-30)
-        if ti.static(self.bodies.count > 0):
+        if ti.static(self.looks):
             leans *= self.clear(b, along)
         for a in ti.static(range(p.axes)):
             if ti.static(p.axes == PLANE):
@@ -117,7 +118,7 @@ class TangentialCorrection:
         for k in ti.static(range(self.bodies.count)):
             owner = self.bodies.owner[ti.max(row, 0)]
             if (row < 0 or self.goes_on[owner, k] == 0) and self.is_in(k, b):
-                pose = [self.bodies.poses[w, k, n] for n in ti.static((Y, Z, COSINE, SINE))]
+                pose = [self.bodies.pieces.poses[w, k, n] for n in ti.static((Y, Z, COSINE, SINE))]
                 clear *= self.clear_of(b, k, pose, to_face)
         for k in ti.static(range(self.bodies.count, len(self.tanks))):
             if row >= 0 and self.is_in(k, b):

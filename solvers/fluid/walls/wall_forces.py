@@ -15,7 +15,6 @@ from solvers.machine.quantity import PLANE
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, swing, turns
 from solvers.space.tangent import moment
-from solvers.tank.pieces import RATE
 
 
 @ti.data_oriented
@@ -88,7 +87,9 @@ class WallForces:
                 rate[k] = ti.cast(found[p.axes + k], p.real)
         if ti.static(self.bodies.moving):  # noqa: SIM102 (compiled only where parts move)
             if piece > 0:
-                rate[0] += ti.cast(self.bodies.poses[w, piece - 1, RATE], p.real)
+                own = self.bodies.pose.rate(w, piece - 1, AT_START)
+                for k in ti.static(range(turns(p.axes))):
+                    rate[k] += ti.cast(own[k], p.real)
         return rate
 
     @ti.func

@@ -135,7 +135,7 @@ def test_water_flows_in_by_forces_that_are_equal_and_opposite(thin):
     """
     run, start = thin
     run.restore(start)
-    lines = run.water.bodies.hulls.lines
+    lines = run.water.bodies.hulls.holes
     covered = lines.to_numpy()
     opened = covered.copy()
     opened[:, OPENS] = 0.0
