@@ -7,7 +7,7 @@ import numpy as np
 from lab.assembly.drawn import classes, draw_shapes
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
-from lab.preset.sections.water.floating import check_draught
+from lab.preset.sections.bodies.checks import check_draught
 from lab.preset.units import show
 from solvers.grains.bed.filling import (
     SPACING,

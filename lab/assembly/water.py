@@ -7,8 +7,8 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
+from lab.preset.sections.bodies.hulls import depths_of, rooms_of
 from lab.preset.sections.parts import parts_of
-from lab.preset.sections.water.bodies import depths_of, rooms_of
 from lab.preset.sections.water.inflow import inlets_of
 from lab.preset.sections.water.liquid import bounds, centre_of_flow
 from lab.preset.sections.water.tanks import Pool, outline_at
@@ -73,7 +73,8 @@ def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
     if not pool.depth:
         return particles_of_water(0)
     parts = [part for part in parts_of(preset) if part.tank == pool.number and not part.sieve]
-    beside = parts if water.start == "packed" and any(map(is_slanted, parts)) and not water.periodic else []
+    slanted = water.start == "packed" and any(map(is_slanted, parts)) and not water.periodic
+    beside = parts if slanted or preset.tank.solid else []
     if (parts and not beside) or water.periodic:  # a lattice is cut off at bodies and upright plates, or goes on across
         water = replace(water, start="lattice")
     borne = preset.water.radius is None and "z" not in water.periodic

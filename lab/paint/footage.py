@@ -74,6 +74,7 @@ class Footage:
         self.drive, self.settings = drive_text(recording.preset), recording.preset.video
         self.title = recording.preset.title or recording.name
         self.part_turn = frames["part_turn"][:] if "part_turn" in frames else np.zeros(self.part.shape[:-1])
+        self.part_pitch_yaw = frames["part_pitch_yaw"][:] if "part_pitch_yaw" in frames else None
         self.space = scene_in_space(recording.preset, self)
         self.pose, self.series_pose = flat(self.pose), flat(self.series_pose)
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None

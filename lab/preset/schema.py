@@ -24,6 +24,8 @@ from lab.preset.kept.content import MATTERS
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
 from lab.preset.sections.axle import Axle, check_axle
+from lab.preset.sections.bodies.checks import check_hold
+from lab.preset.sections.bodies.floating import WithBodies
 from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_layers, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
@@ -40,9 +42,7 @@ from lab.preset.sections.tank import FurtherTank, Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.air_checks import check_air
-from lab.preset.sections.water.bodies import WithBodies
 from lab.preset.sections.water.checks import check_water
-from lab.preset.sections.water.floating import check_hold
 from lab.preset.sections.water.flow_checks import check_weight
 from lab.preset.sections.water.inflow import Inlet
 from lab.preset.sections.water.liquid import liquid

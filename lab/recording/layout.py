@@ -88,13 +88,17 @@ def series_of(
     return (TIME, *tank.SERIES, *of_matters, *(quantity for all_of, there in further if there for quantity in all_of))
 
 
-def frames_of(steered_sea: bool = False, matters: Collection[str] = MATTERS, wet: bool = False) -> tuple[Quantity, ...]:
+def frames_of(
+    steered_sea: bool = False, matters: Collection[str] = MATTERS, wet: bool = False, floating_in_space: bool = False
+) -> tuple[Quantity, ...]:
     """The quantities in the picture frames of a run.
 
-    `steered_sea`: with the waves, because the user steers them; `wet`: with those of water between grains.
+    `steered_sea`: with the waves, because the user steers them; `wet`: with those of water between grains;
+    `floating_in_space`: with all angles of bodies.
     """
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].FRAMES)
-    return (TIME, *tank.FRAMES, *((WAVES,) if steered_sea else ()), *of_matters, *(mixture.FRAMES if wet else ()))
+    of_tank = *tank.FRAMES, *(tank.FRAMES_OF_BODIES_IN_SPACE if floating_in_space else ())
+    return (TIME, *of_tank, *((WAVES,) if steered_sea else ()), *of_matters, *(mixture.FRAMES if wet else ()))
 
 
 def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:
@@ -103,7 +107,9 @@ def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quan
     more = bool(preset.axle), bool(preset.bodies), bool(preset.inflow), preset.axes > PLANE
     whole = series_of(afloat, matters, *more)
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
-    tables = {"series": series, "frames": frames_of(afloat and steered, matters, preset.wet or preset.soaks)}
+    in_space = bool(preset.bodies) and preset.axes > PLANE
+    frames = frames_of(afloat and steered, matters, preset.wet or preset.soaks, in_space)
+    tables = {"series": series, "frames": frames}
     if preset.axes > PLANE:
         tables = {name: tuple(one.within(preset.axes) for one in those) for name, those in tables.items()}
     return tables | ({"steering": STEERING} if steered else {})

@@ -2,11 +2,14 @@
 
 from math import inf, pi, sqrt, tanh
 
+import numpy as np
+
 from lab.assembly.grains import cargo_of
 from lab.preset.schema import Preset
 from lab.preset.sections.axle import Axle
-from lab.preset.sections.water.bodies import draught, rooms_of
-from lab.preset.sections.water.floating import is_in
+from lab.preset.sections.bodies.checks import is_in
+from lab.preset.sections.bodies.floating import draught
+from lab.preset.sections.bodies.hulls import rooms_of
 from lab.preset.units import show
 from solvers.scene import Scene
 
@@ -62,12 +65,13 @@ def bodies(preset: Preset, scene: Scene) -> list[tuple[str, str]]:
     for name, part in preset.parts.items():
         free = part.solved(0, preset.thickness).free
         if free is not None:
-            y, z = free.centre
+            middle = ", ".join(show(place, "m") for place in free.centre)
             cargo = cargo_of(scene) if preset.grains and is_in(preset.grains.room, name) else 0.0
-            deep = draught(part, (free.mass + cargo) / (preset.water.density * preset.thickness))
+            deep = draught(part, (free.mass + cargo) / preset.water.density, preset.thickness)
             sinks = "sinks" if deep == inf else f"floats {show(deep, 'm')} deep, upright as drawn"
             with_it = f", and {cargo:.4g} kg of grains" if cargo else ""
-            about = f"{free.inertia:.4g} kg m^2 about [{show(y, 'm')}, {show(z, 'm')}]"
+            moments = ", ".join(f"{moment:.4g}" for moment in np.diag(np.atleast_2d(free.inertia)))
+            about = f"{moments} kg m^2 about [{middle}]"
             what = f"{free.mass:.4g} kg and {about}{with_it}; {sinks}"
             rows.append((name, what + (f"; let go after {show(free.release, 's')}" if free.release else "")))
         if part.wall is not None:

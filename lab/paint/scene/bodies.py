@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from lab.paint.painter import Camera, paint_plate, paint_shape
-from lab.preset.sections.water.bodies import rooms_of
+from lab.preset.sections.bodies.hulls import rooms_of
 
 PLATE, EDGE, COVER = 0.3, 0.12, 0.1  # thickness of plates, of outlines and of covers, in u
 PALE = 0.45  # of the part's colour in a solid body; the rest is the paper's
@@ -62,7 +62,7 @@ def bodies_of(preset) -> list[SolidBody]:
         if part.closed:
             openings = tuple((passage(one.points, part.wall), one.opens) for one in part.openings.values())
             rooms = tuple(rooms_of(part).values())
-            found.append(SolidBody(number, name, np.array(part.points), rooms, openings, tuple(part.openings)))
+            found.append(SolidBody(number, name, np.array(part.section), rooms, openings, tuple(part.openings)))
     return found
 
 

@@ -56,6 +56,11 @@ class SpaceView:
         self._reach = [_reach(bed, ROOM / np.sqrt(len(beds))) for bed in beds]
         self._cameras = self._place_beds()
         self._axes = [TurningAxes(bed) for bed in beds]
+        section = viewpoint.section
+        self._plates = [
+            bed.footage.space.plates if section is None else bed.footage.space.cut_open(section.point[2])
+            for bed in self.beds
+        ]
         self._layers: dict[tuple, Layers] = {}  # by the size of the part of the picture
 
     def _place_beds(self) -> list[SpaceCamera]:
@@ -125,7 +130,7 @@ class SpaceView:
         if space.hull is not None:
             self._paint_edges(part, layers, camera, space.hull, half, theme.far)
         place, radius, paints = self._cargo(bed, row)
-        plates = [_moved(plate, space.part_at(number, bed.world, row)) for number, plate in enumerate(space.plates)]
+        plates = [_moved(plate, space.part_at(n, bed.world, row)) for n, plate in enumerate(self._plates[k])]
         walls = Walls.apart([space.walls, *plates]) if plates else space.walls
         tints = np.tile(np.array(theme.hold, dtype=float), (len(walls.pane), 1))
         tints[len(space.walls.pane) :] = blend(theme.part, theme.hold, PALE)

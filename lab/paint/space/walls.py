@@ -11,6 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from solvers.tank.shapes import PrismShape, SphereShape
+
 FACETS = 96  # of a surface turned about an axis
 LEVEL = 1e-6  # slope below which a plate is level
 MANY = 200  # corners
@@ -182,3 +184,17 @@ def prism(outline: np.ndarray, along: float, open_edges: Sequence[int] = ()) -> 
             sides.append(side if inward else side[::-1])
     ends = (far, near[::-1]) if inward else (far[::-1], near)
     return Walls.of([*sides, *ends])
+
+
+def solid_walls(shape: SphereShape | PrismShape) -> Walls:
+    """The faces of a solid body, which is seen from outside."""
+    if isinstance(shape, SphereShape):
+        y, z, x = shape.middle
+        angle = np.pi * np.arange(FACETS // 2 + 1) / (FACETS // 2)
+        outline = np.column_stack([shape.radius * np.sin(angle), -shape.radius * np.cos(angle)])
+        pairs = pairwise(outline)
+        found, offset = Walls.joined([_turned(end, start) for start, end in pairs]), np.array([y, z, x])
+    else:
+        inner, offset = prism(shape.polygon, shape.along), np.array([0.0, 0.0, shape.middle])
+        found = Walls.of([inner.points[a:b][::-1] for a, b in pairwise(inner.first)])
+    return Walls(found.points + offset, found.first, found.pane)

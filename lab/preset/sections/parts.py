@@ -7,8 +7,10 @@ from typing import Annotated
 
 from lab.base.errors import LabError
 from lab.preset.outline import MOST_CORNERS, Point
+from lab.preset.sections.bodies import floating as bodies
+from lab.preset.sections.bodies import hulls
+from lab.preset.sections.bodies.in_space import circle, faults_in_space, shape_of
 from lab.preset.sections.history import Record, check_record, check_start
-from lab.preset.sections.water import bodies
 from lab.preset.units import needed, show
 from solvers.machine.marks import Doc
 from solvers.motion import MOTIONS
@@ -47,13 +49,18 @@ class PartGroup(solved.Part):
     @property
     def line(self) -> tuple[Point, ...]:
         """The corners (m) as a line to draw; that of a body ends where it begins."""
-        return (*self.points, self.points[0]) if self.closed else self.points
+        return (*self.section, self.section[0]) if self.closed else self.section
+
+    @property
+    def section(self) -> tuple[Point, ...]:
+        """The corners (m) in the section; of a sphere those of a polygon in its place."""
+        return self.points if self.radius is None else circle(self.points[0], self.radius)
 
     def solved(self, tank: int = 0, thickness: float = 1.0) -> solved.Body:
         """The part as the solver takes it, in the tank of this number, of a `thickness` (m)."""
         motions, move = tuple(self.moves.values()), (self.move, self.start, self.speed, self.acceleration)
-        free, hull = bodies.freedom(self, thickness), bodies.hull_of(self)
-        return solved.Body(self.points, *move, self.closed, motions, tank, free, hull, self.sieve)
+        free, hull = bodies.freedom(self, thickness), hulls.hull_of(self)
+        return solved.Body(self.section, *move, self.closed, motions, tank, free, hull, self.sieve, shape_of(self))
 
 
 WHERE = "The tank in which it stands, by its name in [tanks]; by default it is [tank]."
@@ -91,7 +98,7 @@ def check_parts(preset) -> None:
             others = f"one of {', '.join(tanks)}" if tanks else "no further tanks here"
             raise LabError(f"parts.{name}.tank: is {part.tank!r}, and there are {others}; leave it out for [tank].")
         _check_motions(part, f"parts.{name}", _larger_side(outline))
-        for key, fault in bodies.faults(part):
+        for key, fault in (*faults_in_space(part), *bodies.faults(part)):
             raise LabError(f"parts.{name}.{key}: {fault}.")
 
 
@@ -116,7 +123,7 @@ def _check_motions(part: Part, key: str, side: float) -> None:
 def _faults(part: Part, outline: Sequence[Point]) -> Iterator[tuple[str, str]]:
     """The keys at fault, each with what is wrong."""
     points = part.points
-    if not 2 <= len(points) <= MOST_CORNERS:
+    if not (1 if part.radius is not None else 2) <= len(points) <= MOST_CORNERS:
         yield "points", f"from 2 to {MOST_CORNERS} points are needed (got {len(points)})"
     for k in range(1, len(points)):
         if points[k] == points[k - 1]:

@@ -6,6 +6,8 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import Point
+from lab.preset.sections.bodies.in_space import IN_SPACE as OF_BODIES
+from lab.preset.sections.bodies.in_space import shape_of
 from lab.preset.sections.history import Record
 from lab.preset.sections.motion import Motion
 from lab.preset.units import show
@@ -35,6 +37,8 @@ def check_space(preset) -> None:
             raise LabError("contact.twisting: grains twist in space alone; give tank.along, or leave this out.")
         for key in _in_space(preset.motion):
             raise LabError(f"{key}: a tank moves so in space alone; give tank.along, or leave this out.")
+        for key in _bodies_in_space(preset):
+            raise LabError(f"{key}: this body is of a tank in space; give tank.along, or leave this out.")
         return
     for key, fault in _faults(preset):
         raise LabError(f"{key}: {fault}.")
@@ -52,6 +56,9 @@ def _faults(preset) -> Iterator[tuple[str, str]]:
             yield key, f"{reason}; leave this out, or {key_of_space}"
     if preset.water:
         yield from _faults_of_water(preset, key_of_space)
+    else:
+        for key in _bodies_in_space(preset):
+            yield key, "grains meet parts that are as long as the tank; leave this out"
     if preset.ship and tank.turned:
         yield "tank.turned", "a ship's hold is drawn out along her; give tank.along in its place"
     longest = tank.length or (preset.ship.length if preset.ship else None)
@@ -95,14 +102,27 @@ def _faults_of_water(preset, key_of_space: str) -> Iterator[tuple[str, str]]:
             "tank.along",
             f"must be {show(least, 'm')} or more, two reaches of the water's kernel; or take finer water",
         )
-    beside = {name: bool(getattr(preset, name)) for name in ("grains", "air", "ship", "parts", "damping", "inflow")}
+    beside = {name: bool(getattr(preset, name)) for name in ("grains", "air", "ship", "damping", "inflow")}
     for name in (name for name, there in beside.items() if there):
         yield name, f"in space water is alone in its tank so far; leave this out, or {key_of_space}"
     for name, gauge in preset.gauges.items():
         yield f"gauges.{name}", f"in space no gauge of {gauge.kind} is read yet; leave this out, or {key_of_space}"
+    for name, part in preset.parts.items():
+        if part.radius is None and part.along is None:
+            yield f"parts.{name}", "in space water has solid bodies alone in it; give its length along x, or its radius"
+        elif (ends := shape_of(part).bounds)[0][2] < -0.5 * tank.along or ends[1][2] > 0.5 * tank.along:
+            yield f"parts.{name}.x", "this body stands in an end wall of the tank; move it, or make the tank longer"
+        for key in ("sieve", "tank"):
+            if getattr(part, key):
+                yield f"parts.{name}.{key}", "this is of the plane alone; leave this out"
     for name in ("region", "radius", "flow", "periodic", "between_walls"):
         if getattr(water, name):
             yield f"water.{name}", f"this is of the plane alone; leave this out, or {key_of_space}"
+
+
+def _bodies_in_space(preset) -> Iterator[str]:
+    """The keys of parts that the plane does not have."""
+    yield from (f"parts.{n}.{key}" for n, part in preset.parts.items() for key in OF_BODIES if getattr(part, key))
 
 
 def _in_space(motion: Motion) -> Iterator[str]:

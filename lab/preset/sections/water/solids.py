@@ -6,10 +6,10 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import simple_polygon
+from lab.preset.sections.bodies.checks import check_floating
 from lab.preset.sections.history import check_end
 from lab.preset.sections.parts import PartGroup, parts_of
 from lab.preset.sections.water import liquid
-from lab.preset.sections.water.floating import check_floating
 from lab.preset.sections.water.tanks import outline_at, pools
 from lab.preset.units import show
 from solvers.fluid.bodies.solids import counter_clockwise
@@ -58,7 +58,7 @@ def _check_end(preset: liquid.Wet, part: PartGroup, key: str) -> None:
 def _check_body(part: PartGroup, least: float, key: str) -> None:
     """Raise LabError for a body that is no simple polygon, or thinner (m) than `least`."""
     try:
-        corners = counter_clockwise(simple_polygon(part.points))
+        corners = counter_clockwise(simple_polygon(part.section))
     except LabError as error:
         raise LabError(f"{key}.points: {error}") from None
     thin = thickness(corners)
@@ -86,7 +86,7 @@ def thickness(corners: np.ndarray) -> float:
 def _check_place(tank: np.ndarray, part: PartGroup, key: str) -> None:
     """Raise LabError for a part that stands in a wall of its tank, at the start or on its way; above it, it may be."""
     outline, top, left = Outline(tank, 1.0), tank[:, 1].max(), NEAR * float(np.ptp(tank, axis=0).max())
-    points = np.array(part.points)
+    points = np.array(part.section)
     sides = points[:-1] if not part.closed else points
     share = np.linspace(0.0, 1.0, ALONG)[:, None]
     ends = points[1:] if not part.closed else np.roll(points, -1, axis=0)

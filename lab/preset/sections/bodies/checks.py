@@ -3,8 +3,9 @@
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.sections.bodies.floating import draught
+from lab.preset.sections.bodies.hulls import depths_of
 from lab.preset.sections.parts import PartGroup
-from lab.preset.sections.water.bodies import depths_of, draught
 from lab.preset.sections.water.liquid import Wet
 from lab.preset.units import show
 
@@ -35,7 +36,7 @@ def check_draught(preset: Wet, part: PartGroup, key: str, cargo: float = 0.0) ->
     """
     spacing = preset.liquid.spacing
     mass = part.solved(0, preset.thickness).free.mass + cargo
-    deep = draught(part, mass / (preset.water.density * preset.thickness))
+    deep = draught(part, mass / preset.water.density, preset.thickness)
     if deep == np.inf and part.wall is not None:
         laden = f" with {cargo:.4g} kg of grains" if cargo else ""
         raise LabError(f"{key}: this hull{laden} is heavier than the water that it can displace; make it lighter.")
