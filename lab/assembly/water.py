@@ -30,6 +30,7 @@ from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.tank.outline import moments
 from solvers.tank.parts import Part
+from solvers.tank.shapes import PrismShape
 from solvers.tank.tank import Tank
 
 VISCOSITY = 1.0e-6  # m²/s, kinematic viscosity of water at 20 °C
@@ -100,14 +101,24 @@ def in_rooms(preset: Preset, tank: int, water: Water) -> list[np.ndarray]:
     found = []
     for (name, part), solved in zip(preset.parts.items(), parts_of(preset), strict=True):
         corners, depths_in = rooms_of(part), depths_of(part)
-        for room in corners if solved.tank == tank else ():
+        for number, room in enumerate(corners if solved.tank == tank else ()):
             if depths_in[room] > 0.0:
-                level = corners[room][:, 1].min() + depths_in[room]
                 try:
-                    found.append(at_rest(corners[room], level, replace(water, start="lattice"), preset.run.gravity))
+                    found.append(_in_room(solved.hull.rooms[number], depths_in[room], water, preset.run.gravity))
                 except ValueError as error:
                     key = f"parts.{name}.rooms.{room}.depth"
                     raise LabError(f"{key}: {error}; take smaller particles.") from None
+    return found
+
+
+def _in_room(room: Sequence | PrismShape, depth: float, water: Water, gravity: float) -> np.ndarray:
+    """The particles (n,) of water of a depth (m) at rest in a room of a hull. Raises ValueError if none fits in."""
+    prism = room if isinstance(room, PrismShape) else None
+    corners = prism.polygon if prism else np.array(room)
+    level = corners[:, 1].min() + depth
+    found = at_rest(corners, level, replace(water, start="lattice"), gravity, along=prism.along if prism else None)
+    if prism:
+        found["position"][:, 2] += prism.middle
     return found
 
 
