@@ -10,8 +10,9 @@ from solvers.tank.parts import Hull, Opening
 from solvers.tank.shapes import PrismShape
 
 STRIPS = 12  # across a hole, whose rim they make up
+THIN = 1e-6  # m, of a cut
 
-Piece = tuple[float, float, float, float]  # of a plate: from which share of its edge to which, and from which x (m)
+Piece = tuple[np.ndarray, np.ndarray, np.ndarray]  # of a plate at two places of its edge: shares, and from and to x (m)
 
 
 def hull_walls(shape: PrismShape, hull: Hull, cut: float | None) -> Walls:
@@ -25,7 +26,7 @@ def hull_walls(shape: PrismShape, hull: Hull, cut: float | None) -> Walls:
     outer = shape.polygon
     faces = list(_plates(outer, low, end, holes, hull.wall, outwards=True))
     faces.append(_end(outer, low, -1.0))
-    rooms = [room for room in hull.rooms if room.middle - 0.5 * room.along < end]
+    rooms = [room for room in hull.rooms if end < high and room.middle - 0.5 * room.along < end]
     for room in rooms:
         start = room.middle - 0.5 * room.along
         stop = min(end, room.middle + 0.5 * room.along)
@@ -49,10 +50,10 @@ def _plates(
 ) -> Iterator[np.ndarray]:
     """The sides of a prism with what holes leave of them, seen from outside or from inside."""
     for begin, end in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        for first, last, start, stop in _pieces(begin, end, low, high, holes, wall):
-            a, b = (begin + share * (end - begin) for share in (first, last))
-            face = np.array([[*a, start], [*b, start], [*b, stop], [*a, stop]])
-            yield face[::-1] if outwards else face
+        for shares, start, stop in _pieces(begin, end, low, high, holes, wall):
+            a, b = (begin + share * (end - begin) for share in shares)
+            face = np.array([[*a, start[0]], [*b, start[1]], [*b, stop[1]], [*a, stop[0]]])
+            yield face if outwards else face[::-1]
 
 
 def _pieces(
@@ -68,25 +69,35 @@ def _pieces(
         half = radius / length
         if off < wall and abs(normal[:2] @ way) < 1e-6 * length and 0.0 < share < 1.0:
             edges = np.clip(share + half * np.linspace(-1.0, 1.0, STRIPS + 1), 0.0, 1.0)
-            yield 0.0, edges[0], low, high
-            for first, last in pairwise(edges):
-                aside = (0.5 * (first + last) - share) * length
-                reach = float(np.sqrt(max(0.0, radius**2 - aside**2)))
-                if low < middle[2] - reach:
-                    yield first, last, low, min(high, middle[2] - reach)
-                if middle[2] + reach < high:
-                    yield first, last, max(low, middle[2] + reach), high
-            yield edges[-1], 1.0, low, high
+            reach = np.sqrt(np.maximum(0.0, radius**2 - ((edges - share) * length) ** 2))
+            edges, reach = np.array([0.0, *edges, 1.0]), np.array([0.0, *reach, 0.0])
+            for k, pair in enumerate(pairwise(edges)):
+                near = reach[k : k + 2]
+                for start, stop in ((low + 0.0 * near, middle[2] - near), (middle[2] + near, high + 0.0 * near)):
+                    start, stop = np.clip(start, low, high), np.clip(stop, low, high)
+                    if (stop > start).any() and pair[1] > pair[0]:
+                        yield np.array(pair), start, stop
             return
-    yield 0.0, 1.0, low, high
+    yield np.array([0.0, 1.0]), np.full(2, low), np.full(2, high)
 
 
 def _rim(outer: np.ndarray, inner: np.ndarray, x: float, holes: Sequence[Opening], wall: float) -> Iterator[np.ndarray]:
     """The cut through the wall between two polygons with as many corners, without what holes leave open there."""
     ends = np.roll(outer, -1, axis=0), np.roll(inner, -1, axis=0)
     for a, b, c, d in zip(outer, ends[0], inner, ends[1], strict=True):
-        for first, last, start, stop in _pieces(a, b, x - 1e-6, x, holes, wall):
-            if stop < x or start >= x:
-                continue
+        for first, last in _solid(a, b, x, holes, wall):
             corners = a + first * (b - a), a + last * (b - a), c + last * (d - c), c + first * (d - c)
             yield np.array([[*corner, x] for corner in corners])
+
+
+def _solid(
+    begin: np.ndarray, end: np.ndarray, x: float, holes: Sequence[Opening], wall: float
+) -> Iterator[tuple[float, float]]:
+    """Between which shares of an edge a plate is there at a place along x (m)."""
+    there = [shares for shares, start, stop in _pieces(begin, end, x - THIN, x, holes, wall) if (stop == x).all()]
+    while there:
+        first, last = there.pop(0)
+        while there and there[0][0] == last:
+            last = there.pop(0)[1]
+        if last > first:
+            yield first, last
