@@ -128,7 +128,7 @@ def refuse_space(scene) -> None:
     plane_alone = {
         "air": bool(water.air),
         "plates": any(part.shape is None for part in scene.parts),
-        "gauges": bool(water.gauges or water.levels or water.edges),
+        "force gauges": bool(water.edges),
         "damping zones": bool(water.damping),
         "several tanks": bool(scene.more_tanks),
         "a ship or an axle": bool(scene.vessels or scene.axles),

@@ -10,7 +10,7 @@ from solvers.fluid import quantities
 from solvers.fluid.constants import Constants
 from solvers.fluid.lists.order import Order
 from solvers.fluid.phases import quantities as of_air
-from solvers.fluid.state import UNUSED, Particles
+from solvers.fluid.state import FAR, UNUSED, Particles
 from solvers.fluid.surface.level_gauges import LevelGauges
 from solvers.machine.quantity import PLANE, places
 from solvers.machine.state import Axis, State
@@ -40,8 +40,8 @@ def sums_of(axes: int) -> tuple[str, ...]:
 class Pool:
     """The tanks of the water: their walls, whose water is whose, and whether it may leave none of them (`closed`).
 
-    Of the first with water its number and the places `sides` (m) of its corners along y. In space `walls` are those
-    of the outline, which is drawn out from −`half` to `half` (m). `poses` are the tanks'.
+    Of the first with water its number and between which `sides` (m) it reaches along y, and along x. In space `walls`
+    are those of the outline, which is drawn out from −`half` to `half` (m). `poses` are the tanks'.
     """
 
     walls: Walls
@@ -49,7 +49,7 @@ class Pool:
     poses: Poses | PosesInSpace
     closed: bool
     first: int
-    sides: np.ndarray
+    sides: tuple[tuple[float, float], ...]
     half: float = 0.0
 
     @classmethod
@@ -57,10 +57,12 @@ class Pool:
         """The tanks of a scene (`solvers.scene.Scene`)."""
         wet = [number for number, fill in enumerate(scene.fills) if fill]
         shut = scene.fluid.water.walls and not any(scene.tanks[number].open_edges for number in wet)
-        sides = scene.tanks[wet[0]].outline[:, 0]
+        corners = scene.tanks[wet[0]].outline[:, 0]
         closed, half = shut and not scene.fluid.water.periodic, 0.0
         if scene.solid:
             walls, half = walls.section, scene.solid.half(scene.outline)
+        long = FAR if "x" in scene.fluid.water.periodic else half
+        sides = (float(corners.min()), float(corners.max())), (-long, long)
         return cls(walls, order, poses, closed, wet[0], sides, half)
 
 

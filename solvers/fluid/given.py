@@ -21,21 +21,24 @@ def particles(*shape: int, axes: int = PLANE) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Gauge:
-    """A pressure gauge in a wall: its middle, the direction of the wall there, its length, and how fast it responds.
+    """A pressure gauge in a wall: its middle, its length, and how fast it responds; in space a disc in a face.
 
-    It shows the mean over its length, through a first-order low-pass filter with the time constant `response`.
+    It shows the mean over its length or disc, through a first-order low-pass filter with the time constant `response`.
     """
 
     place: Annotated[tuple[float, float], Unit("m"), Doc("Middle of the sensor on the wall, y and z in the tank.")]
     length: Annotated[float, Unit("m"), Interval(ge=0), Doc("Length of the sensor along the wall.")] = 0.0
     response: Annotated[float, Unit("s"), Interval(ge=0), Doc("Time constant of the sensor.")] = 0.0
+    x: Annotated[float, Unit("m"), Doc("Where its middle is along x, in space.")] = 0.0
+    radius: Annotated[float, Unit("m"), Interval(ge=0), Doc("Radius of its disc, in space.")] = 0.0
 
 
 @dataclass(frozen=True)
 class Level:
-    """A gauge of the water's depth above the floor at a place `y` (m) of the tank's own axes."""
+    """A gauge of the water's depth above the floor at a place `y`, in space also `x` (m), of the tank's own axes."""
 
     y: Annotated[float, Unit("m"), Doc("Where the depth is measured, along the tank's floor.")]
+    x: Annotated[float, Unit("m"), Doc("Where it is measured along x, in space.")] = 0.0
 
 
 @dataclass(frozen=True)

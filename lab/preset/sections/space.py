@@ -105,8 +105,6 @@ def _faults_of_water(preset, key_of_space: str) -> Iterator[tuple[str, str]]:
     beside = {name: bool(getattr(preset, name)) for name in ("grains", "air", "ship", "damping", "inflow")}
     for name in (name for name, there in beside.items() if there):
         yield name, f"in space water is alone in its tank so far; leave this out, or {key_of_space}"
-    for name, gauge in preset.gauges.items():
-        yield f"gauges.{name}", f"in space no gauge of {gauge.kind} is read yet; leave this out, or {key_of_space}"
     for name, part in preset.parts.items():
         if part.radius is None and part.along is None:
             yield f"parts.{name}", "in space water has solid bodies alone in it; give its length along x, or its radius"

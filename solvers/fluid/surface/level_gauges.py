@@ -1,4 +1,4 @@
-"""Level gauges: the depth of the water at places along the floor."""
+"""Level gauges: the depth of the water at places over the floor."""
 
 from collections.abc import Sequence
 
@@ -10,13 +10,18 @@ from solvers.fluid.given import Level
 from solvers.fluid.lists.order import Order
 from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.state import Axis, State, padded, roomy
+from solvers.space.axes import UP
 
 USUAL = 8  # gauges for which there is room at least
 
 
 @ti.data_oriented
 class LevelGauges:
-    """Depths (W, gauges) m of the first tank with water, whose number and corners (m) along y are the `pool`."""
+    """Depths (W, gauges) m of the first tank with water: its volume around each place over the floor's area there.
+
+    Both are weighted by a kernel along y, in space also along x. The `pool` are the tank's number and how far (m) it
+    reaches along y, and along x.
+    """
 
     def __init__(
         self,
@@ -25,14 +30,15 @@ class LevelGauges:
         constants: Constants,
         order: Order,
         levels: Sequence[Level],
-        pool: tuple[int, np.ndarray],
+        pool: tuple[int, Sequence[tuple[float, float]]],
     ):
         self.particles, self.constants, self.order, (self.first, sides) = particles, constants, order, pool
         self.exact, self.count, room = arrays.exact, len(levels), roomy(len(levels), USUAL)
-        own, places = arrays.under("water.diagnostics"), padded(np.array([level.y for level in levels]), room)
+        own, places = arrays.under("water.diagnostics"), np.array([(one.y, one.x) for one in levels]).reshape(-1, 2)
         self.number = own.holding("level_number", np.array([self.count]), "one", ti.i32)
-        self.place = own.holding("level_y", places, "level", arrays.exact)
-        self.sides = own.holding("level_sides", np.array((sides.min(), sides.max())), "side", arrays.exact)
+        self.place = own.holding("level_place", padded(places, room), "level axis", arrays.exact)
+        self.sides = own.holding("level_sides", np.array(sides), "axis side", arrays.exact)
+        self.ways = [axis for axis in range(particles.axes) if axis != UP]
         each = Axis("world", particles.worlds), Axis("level", room)
         (self.depth,) = own.reals(each, "level_depth", kept=False)
 
@@ -50,16 +56,24 @@ class LevelGauges:
     def found(self, w, level):
         """As `measure` has it."""
         p = self.particles
-        reach, y = ti.cast(self.constants.get("reach"), self.exact), self.place[level]
-        total = ti.cast(0.0, self.exact)
+        reach = ti.cast(self.constants.get("reach"), self.exact)
+        total, floor = ti.cast(0.0, self.exact), ti.cast(1.0, self.exact)
         for b in range(w * p.stride, w * p.stride + p.used[w]):
             for lane in range(p.lanes):
-                if p.number[b, lane] != UNUSED and self.order.layer(b) == self.first:
-                    t = 1.0 - ti.abs(ti.cast(p.place[0][b, lane], self.exact) - y) / reach
-                    if t > 0.0 and p.gas_at(b, lane) < 0.5:
-                        total += ti.cast(p.volume[b, lane], self.exact) * t * t * (3.0 - 2.0 * t)
-        left, right = (y - self.sides[0]) / reach, (self.sides[1] - y) / reach
-        return ti.cast(total / (reach * (self.covered(left) + self.covered(right))), p.real)
+                if p.number[b, lane] != UNUSED and self.order.layer(b) == self.first and p.gas_at(b, lane) < 0.5:
+                    weight = ti.cast(p.volume[b, lane], self.exact)
+                    for k, axis in ti.static(enumerate(self.ways)):
+                        off = ti.cast(p.place[axis][b, lane], self.exact) - self.place[level, k]
+                        if ti.static(axis > UP and self.order.grid.periods[axis] > 0.0):
+                            period = ti.cast(self.order.numbers[self.order.period + axis], self.exact)
+                            off -= period * ti.floor(off / period + 0.5)
+                        t = ti.max(1.0 - ti.abs(off) / reach, 0.0)
+                        weight = weight * t * t * (3.0 - 2.0 * t)
+                    total += weight
+        for k in ti.static(range(len(self.ways))):
+            left, right = self.place[level, k] - self.sides[k, 0], self.sides[k, 1] - self.place[level, k]
+            floor *= reach * (self.covered(left / reach) + self.covered(right / reach))
+        return ti.cast(total / floor, p.real)
 
     @ti.func
     def covered(self, x):

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from solvers.fluid.given import Water
+from solvers.fluid.given import Gauge, Water
 from solvers.fluid.start.lattice import lattice
+from solvers.fluid.walls.faces import spot_on
 from solvers.fluid.walls.layers import FAR, distance, edge_of, firm, layers, offset_from, sharp, straight
-from solvers.fluid.walls.wall_layers import OF_NONE, WallLayers
+from solvers.fluid.walls.wall_layers import OF_NONE, WallLayers, covered
 from solvers.tank.solids.solid import Prism
 from solvers.tank.tank import Tank
 
@@ -26,6 +27,25 @@ class PrismLayers(WallLayers):
         self.edges, self.tanks, self.depths = np.zeros(0, dtype=int), np.zeros(0, dtype=int), np.zeros(0)
         if water.walls:
             self._lay(water, tank, solid)
+            for gauge in water.gauges:
+                self._add_probes(gauge, water, tank, solid)
+
+    def _add_probes(self, gauge: Gauge, water: Water, tank: Tank, solid: Prism) -> None:
+        """Add the probes of a gauge, a disc in the face that is nearest to its middle."""
+        middle = np.array([*gauge.place, gauge.x])
+        spot = spot_on(middle, tank.outline, 0.5 * solid.along, not solid.periodic, tank.open_edges)
+        found = spot.disc(gauge.radius, water.spacing)
+        images = (-1, 0, 1) if solid.periodic else (0,)
+        points = np.concatenate([self.points + image * solid.along * np.eye(3)[2] for image in images])
+        near = np.linalg.norm(points - spot.foot, axis=1) < gauge.radius + water.reach
+        self.probes.append(len(self.points) + np.arange(len(found)))
+        volumes = np.tile(self.volumes, len(images))
+        self.open.append(1.0 - covered(found, points[near], volumes[near], water))
+        none, no_way = np.zeros(len(found)), np.zeros_like(found)
+        self._add(found, none, np.full(len(found), OF_NONE), 0)
+        self.firm = np.append(self.firm, none)
+        self.along = np.concatenate([self.along, no_way])
+        self.straight, self.sliding = (np.concatenate([one, no_way]) for one in (self.straight, self.sliding))
 
     def _lay(self, water: Water, tank: Tank, solid: Prism) -> None:
         rows, half = int(np.ceil(water.reach / water.spacing - 1e-9)), 0.5 * solid.along

@@ -83,8 +83,8 @@ def _round(water: Water, tank: Tank) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def covered(places: np.ndarray, points: np.ndarray, volumes: np.ndarray, water: Water) -> np.ndarray:
-    """What share of the kernel at each place (k, 2) m wall particles (n, 2) m cover, (k,)."""
+    """What share of the kernel at each place (k, D) m wall particles (n, D) m cover, (k,)."""
     away = np.linalg.norm(places[:, None] - points, axis=2)
-    kernel = KERNELS[water.kernel]
-    near = np.where(away < water.reach, kernel.printed(np.minimum(away, water.reach), water.length), 0.0)
+    kernel, axes = KERNELS[water.kernel], places.shape[1]
+    near = np.where(away < water.reach, kernel.printed(np.minimum(away, water.reach), water.length, axes), 0.0)
     return near @ volumes

@@ -23,13 +23,31 @@ TABLE = {"grains.table": [["6 mm", 1], ["8 mm", 1]], "grains.distribution": "tab
 YAW = {"amplitude": "5 deg", "frequency": "1 Hz"}
 AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
 
+LEVEL = {"gauges.L1.kind": "level", "gauges.L1.y": "210 mm", "gauges.L1.x": "0 mm"}
+PLANE = "gauges.L1.x: a gauge has this in space alone; give tank.along, or leave this out"
+
+
+def gauge(**keys) -> dict[str, object]:
+    """A gauge in the side at y = 200 mm, 50 mm above the floor, with these keys."""
+    whole = {"place": ["200 mm", "50 mm"], "x": "0 mm"} | keys
+    return {f"gauges.P1.{name}": value for name, value in whole.items()}
+
 
 @pytest.mark.parametrize(
     ("preset", "changes", "said"),
     [
         (CHICKPEAS, WATER, "grains: in space water is alone in its tank so far; leave this out, or tank.along"),
         (SLOSHING, {"air.density": "1.2 kg/m^3"}, "air: in space water is alone in its tank so far"),
-        (SLOSHING, {"gauges.P1.place": ["0 mm", "0 mm"]}, "gauges.P1: in space no gauge of pressure is read yet"),
+        (SLOSHING, {"gauges.P1.place": ["0 mm", "0 mm"]}, "gauges.P1.x: missing for a gauge in space"),
+        (SLOSHING, {**gauge(), "gauges.P1.x": "310 mm"}, "gauges.P1.x: 310 mm is outside of the tank"),
+        (SLOSHING, {**gauge(), "gauges.P1.length": "5 mm"}, "gauges.P1.length: in space a pressure gauge is a disc"),
+        (SLOSHING, gauge(place=["0 mm", "50 mm"]), "gauges.P1.place: [0 m, 50 mm] at x = 0 m is 50 mm away from"),
+        (SLOSHING, gauge(radius="51 mm"), "gauges.P1.radius: 51 mm reaches past the edge of its face, which is 50 mm"),
+        (SLOSHING, gauge(x="295 mm", radius="6 mm"), "gauges.P1.radius: 6 mm reaches past the edge of its face"),
+        (SLOSHING, gauge(kind="force"), "gauges.P1.kind: in space forces on all faces are told without a gauge"),
+        (SLOSHING, gauge(kind="level"), 'gauges.P1.place: goes with kind = "pressure"; a level gauge has y and x'),
+        (SLOSHING, LEVEL, "gauges.L1.y: 210 mm is outside of the tank, which reaches from -200 mm to 200 mm"),
+        ("sloshing/sway-quick", {"gauges.L1.kind": "level", "gauges.L1.y": "0 mm", "gauges.L1.x": "1 mm"}, PLANE),
         (SLOSHING, {"tank.along": "5 mm"}, "tank.along: must be 80 mm or more, two reaches of the water's kernel"),
         (SLOSHING, {"video.colour": "vorticity"}, "video.colour: vorticity is known in the plane only"),
         (SLOSHING, {"water.between_walls": True}, "water.between_walls: this is of the plane alone"),

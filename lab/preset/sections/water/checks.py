@@ -1,24 +1,21 @@
 """Consistency checks of the water in a preset; each error is one sentence that names the key."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.outline import Point, area, stands_out
+from lab.preset.outline import area, stands_out
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.tank import Tank
 from lab.preset.sections.water import liquid
 from lab.preset.sections.water.flow_checks import check_flow, check_periodic
+from lab.preset.sections.water.gauge_checks import check_gauges, place_of
 from lab.preset.sections.water.schemes import SCHEMES
-from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.section import Water
 from lab.preset.sections.wet.states import SHARES, check_share, share_of
 from lab.preset.units import needed, show
 from solvers.fluid.viscosity import LAMINAR
 
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
-MOST_GAUGES = 100
-NEAR = 1e-3  # of the tank's larger side: how far a gauge may be from the wall that it is in
 
 
 class Whole(liquid.Wet):
@@ -47,7 +44,7 @@ def check_water(preset: Whole) -> None:
         check_share(preset, 2.0 * preset.liquid.smoothing * asked)
     else:
         _check_shape(water, tank)
-    _check_gauges(preset.gauges, tank)
+    check_gauges(preset.gauges, tank)
     _check_damping(preset)
     _check_spacing(preset)
     _check_sound(preset)
@@ -185,7 +182,7 @@ def _check_shape(water: Water, tank: Tank) -> None:
         raise LabError("water.full: goes with a depth; water in a region has room to flow.")
     out = stands_out(shape, np.array(tank.corners))
     if out is not None:
-        raise LabError(f"{key}: it reaches out of the tank at {_place(out)}; keep it inside.")
+        raise LabError(f"{key}: it reaches out of the tank at {place_of(out)}; keep it inside.")
 
 
 def _check_spacing(preset: Whole) -> None:
@@ -230,60 +227,3 @@ def _check_background(preset: Whole) -> None:
             f"water.background_pressure: {show(pressure, 'Pa')} is more than a tenth of ρ c² at "
             f"{show(sound, 'm/s')}; take at most {show(most, 'Pa')}, or raise water.sound_speed."
         )
-
-
-def _check_gauges(gauges: Mapping[str, Gauge], tank: Tank) -> None:
-    if len(gauges) > MOST_GAUGES:
-        raise LabError(f"gauges: at most {MOST_GAUGES} are possible (got {len(gauges)}).")
-    for name, gauge in gauges.items():
-        (_check_level if gauge.kind == "level" else _check_pressure)(f"gauges.{name}", gauge, tank)
-
-
-def _check_pressure(key: str, gauge: Gauge, tank: Tank) -> None:
-    """Raise LabError for a gauge of pressure or force that does not lie in one wall."""
-    if gauge.place is None:
-        what = f'missing for a {gauge.kind} gauge; give y and z on a wall, e.g. ["0 mm", "10 mm"]'
-        raise LabError(f"{key}.place: {what}.")
-    if gauge.y is not None:
-        raise LabError(f'{key}.y: goes with kind = "level"; a {gauge.kind} gauge has a place.')
-    for name, given in (("length", gauge.length), ("response", gauge.response)):
-        if given and gauge.kind == "force":
-            raise LabError(f'{key}.{name}: goes with kind = "pressure"; a force gauge is a whole edge.')
-    place, nearest, left = np.array(gauge.place), _nearest(gauge.place, tank), NEAR * max(tank.extent)
-    away = float(np.hypot(*(nearest[0] - place)))
-    if away > left:
-        raise LabError(
-            f"{key}.place: {_place(place)} is {show(away, 'm')} away from the tank's walls; the nearest point on one "
-            f"is {_place(nearest[0])}."
-        )
-    if 0.5 * gauge.length > nearest[1] + left:
-        raise LabError(f"{key}.length: {show(gauge.length, 'm')} reaches past the end of its wall.")
-
-
-def _nearest(place: Point, tank: Tank) -> tuple[np.ndarray, float]:
-    """The point (m) on a wall that is nearest to a place, and its distance (m) from the nearer end of that wall."""
-    corners = np.array(tank.corners)
-    walls = [k for k in range(len(corners)) if k not in tank.open_edges]
-    begin, along = corners[walls], (np.roll(corners, -1, axis=0) - corners)[walls]
-    length = np.hypot(*along.T)
-    share = np.clip(((np.array(place) - begin) * along).sum(axis=1) / length**2, 0.0, 1.0)
-    points = begin + share[:, None] * along
-    k = int(np.hypot(*(points - place).T).argmin())
-    return points[k], float(length[k] * min(share[k], 1.0 - share[k]))
-
-
-def _check_level(key: str, gauge: Gauge, tank: Tank) -> None:
-    """Raise LabError for a level gauge beside the tank, or with keys of a pressure gauge."""
-    for name, given in (("place", gauge.place), ("length", gauge.length), ("response", gauge.response)):
-        if given:
-            raise LabError(f'{key}.{name}: goes with kind = "pressure"; a level gauge has y alone.')
-    if gauge.y is None:
-        raise LabError(f"{key}.y: missing for a level gauge; {needed('m')}.")
-    sides = [y for y, _ in tank.corners]
-    if not min(sides) <= gauge.y <= max(sides):
-        ends = f"{show(min(sides), 'm')} to {show(max(sides), 'm')}"
-        raise LabError(f"{key}.y: {show(gauge.y, 'm')} is outside of the tank, which reaches from {ends}.")
-
-
-def _place(point: np.ndarray) -> str:
-    return f"[{show(float(point[0]), 'm')}, {show(float(point[1]), 'm')}]"

@@ -91,8 +91,8 @@ def liquid(preset: Wet) -> given.Water:
         walls=water.periodic != "yz",
         periodic=(*(water.periodic or ""), *(["x"] if preset.tank.periodic else [])),
         pull=given.Pull(water.flow.pull, centre_of_flow(preset)) if water.flow and water.flow.pull else None,
-        gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
-        levels=tuple(given.Level(gauge.y) for gauge in level.values()),
+        gauges=tuple(_sensor(gauge) for gauge in pressure.values()),
+        levels=tuple(given.Level(gauge.y, gauge.x or 0.0) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
         air=_air(preset, scheme) if preset.air is not None else None,
         damping=tuple(_zone(preset, zone) for zone in preset.damping.values()),
@@ -145,6 +145,11 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
 def interface(preset: Wet) -> str:
     """What acts between water and air, by name: the preset's own, or that of its scheme."""
     return preset.air.interface or SCHEMES[preset.water.scheme].interface
+
+
+def _sensor(gauge: Gauge) -> given.Gauge:
+    """A pressure gauge as the solver takes it."""
+    return given.Gauge(gauge.place, gauge.length, gauge.response, gauge.x or 0.0, gauge.radius)
 
 
 def _edge(gauge: Gauge, tank: Tank) -> int:

@@ -161,9 +161,16 @@ class Gauge:
         Annotated[tuple[float, float], Unit("m")] | None,
         Doc("Middle of a pressure gauge on the wall, y and z in the tank; of a force gauge, a point of its edge."),
     ] = None
+    x: Annotated[
+        Annotated[float, Unit("m")] | None, Doc("Where a gauge of pressure or level is along x, in space.")
+    ] = None
     length: Annotated[
         Annotated[float, Unit("m"), Interval(ge=0)],
         Doc("Length of a pressure gauge along the wall; it shows the mean."),
+    ] = 0.0
+    radius: Annotated[
+        Annotated[float, Unit("m"), Interval(ge=0)],
+        Doc("Radius of a pressure gauge in space, a disc in one face of the tank; it shows the mean."),
     ] = 0.0
     response: Annotated[
         Annotated[float, Unit("s"), Interval(ge=0)], Doc("Time constant of a pressure gauge, a low-pass filter.")
