@@ -156,8 +156,8 @@ class Scene:
 
     @property
     def faces(self) -> int:
-        """How many faces of the tank bear loads of their own: in space each wall of grains, else none."""
-        return len(self.solid.faces(np.asarray(self.outline))) if self.solid and not self.flows else 0
+        """How many faces of the tank bear loads of their own: in space each wall, else none."""
+        return len(self.solid.faces(np.asarray(self.outline))) if self.solid else 0
 
     @property
     def wall_pieces(self) -> int:

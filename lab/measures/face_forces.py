@@ -16,7 +16,6 @@ from lab.measures.value import Value
 from lab.recording import Recording
 from solvers.tank.solids.solid import ENDS, Prism
 
-OF = "grains"
 UP = 1  # of y, z, x
 LEAST_SAMPLES = 2 * BLOCKS
 

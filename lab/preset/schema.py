@@ -133,8 +133,8 @@ class Preset(WithBodies):
 
     @property
     def faces(self) -> tuple[str, ...]:
-        """Names of the faces of the tank in space whose loads are told; none in the plane, and of water alone."""
-        return self.tank.solid.faces(np.array(self.tank.corners)) if self.tank.solid and self.grains else ()
+        """Names of the faces of the tank in space whose loads are told; none in the plane, and of an empty tank."""
+        return self.tank.solid.faces(np.array(self.tank.corners)) if self.tank.solid and self.matters else ()
 
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:

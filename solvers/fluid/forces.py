@@ -17,6 +17,7 @@ from solvers.fluid.terms.surface_normal import SurfaceNormal
 from solvers.fluid.terms.term import Block, Pair, Sums, Term, doing
 from solvers.fluid.terms.viscous_force import ViscousForce
 from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.fluid.walls.face_loads import FaceLoads
 from solvers.fluid.walls.wall_forces import WallForces
 from solvers.machine.quantity import freedoms
 from solvers.machine.state import State
@@ -37,7 +38,10 @@ class Forces:
     later, and `counted` adds that half.
     """
 
-    def __init__(self, arrays: State, context: FluidContext, walls: Extrapolation, load: Load, thickness: float):
+    def __init__(
+        self, arrays: State, context: FluidContext, walls: Extrapolation, load: Load, thickness: float, wall_points
+    ):
+        """`wall_points` are the walls' layers, their slots and the scene (`FaceLoads`)."""
         self.units, self.particles, self.ranges = context.units, context.particles, context.ranges
         self.lists, self.constants, self.poses = context.lists, context.constants, context.poses
         self.sums, self.freedoms = Sums(), len(freedoms(context.particles.axes))
@@ -45,6 +49,7 @@ class Forces:
         terms = self._terms(arrays)
         self.walls = WallForces(context, walls, self.sums, self.balance, doing(terms, "add_wall"))
         terms.append(self.walls.push)
+        self.faces = FaceLoads(arrays, context, self.walls, load, *wall_points)
         self.beginning, self.adding, self.ending = (doing(terms, part) for part in ("begin", "add", "end"))
         self.bodies, self.end_walls = context.lists.bodies, EndWallFriction(context.particles, context.constants)
         own = arrays.under("water.forces")
@@ -53,7 +58,8 @@ class Forces:
         names = "dissipated_lately", "stored_lately", "wall_work_lately"  # the powers (W/m) of the last step
         self.powers = own.reals((context.units.axis,), *names, kind=own.exact)
         self.kept = *self.counts, *self.powers
-        self.order, self.outlines = context.lists.order, context.lists.order.layers
+        self.order = context.lists.order
+        self.outlines = self.faces.count or self.order.layers  # pieces of the load before those of parts
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
 
     def _terms(self, arrays: State) -> list[Term | None]:
@@ -148,7 +154,10 @@ class Forces:
                 self.load.book(u, self.outlines + k, ti.Vector(load), dt)
             before += self.bodies.borne(u, tank)
             self.bodies.book(u, kick, dt)
-        self.book(u, tank, total - before, dt)
+        if ti.static(self.faces.count > 0):
+            self.faces.book(u, dt)
+        else:
+            self.book(u, tank, total - before, dt)
 
     @ti.func
     def book(self, u, tank, total, dt):
@@ -199,7 +208,10 @@ class Forces:
         first = ti.static(self.lists.beside.first)
         if ti.static(lists.pieces == 1):
             ends = [first[block.u, begin], first[block.u, begin + 1]]
-            self.walls.add(block, 0, ends, wall, sums)
+            if ti.static(self.faces.count > 0):
+                self.add_faces(block, ends, wall, sums)
+            else:
+                self.walls.add(block, 0, ends, wall, sums)
         else:
             for piece in range(lists.pieces):
                 ends = [first[block.u, begin + piece], first[block.u, begin + piece + 1]]
@@ -211,6 +223,19 @@ class Forces:
                     force = p.load(p.volume, block.b) * c.get("slope")
                     load = self.walls.on_walls(block, [force * off[a] for a in ti.static(range(p.axes))])
                     self.bodies.bear(block.u, piece - 1, load)
+
+    @ti.func
+    def add_faces(self, block: ti.template(), ends: ti.template(), wall: ti.template(), sums: ti.template()):
+        """As `add_walls`, for the entries between two `ends`; each face of the tank bears its own."""
+        p, begin = self.particles, ends[0]
+        for k in range(ends[0], ends[1]):
+            if self.faces.ends(block.u, k, ends[1]):
+                off = [p.zeros() for _ in ti.static(range(p.axes))]
+                self.walls.add(block, 0, [begin, k + 1], off, sums)
+                for a in ti.static(range(p.axes)):
+                    wall[a] += off[a]
+                self.faces.bear(block, k, off)
+                begin = k + 1
 
     @ti.func
     def accelerate(self, block: ti.template(), wall: ti.template(), sums: ti.template()):

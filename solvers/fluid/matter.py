@@ -91,7 +91,7 @@ class WaterMatter(Matter):
         self.context = shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
         tangential = TangentialCorrection(arrays, shared, layers, slots, scene.tanks)
         self.extrapolation = Extrapolation(arrays, shared, tangential, self.load, thickness)
-        self.forces = Forces(arrays, shared, self.extrapolation, self.load, thickness)
+        self.forces = Forces(arrays, shared, self.extrapolation, self.load, thickness, (layers, slots, scene))
         self.sound_switch = SoundSwitch(arrays, p, self.constants, scene, context.largest_multiple)
         self.has_multiples = self.sound_switch.has_multiples
         self.continuity = Continuity(arrays, shared, self.forces)

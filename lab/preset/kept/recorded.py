@@ -27,7 +27,7 @@ def content(table: object) -> Content:
     faces = edges_named(0 if axes == PLANE or tank.get("mesh") else len(tank.get("outline") or range(4)))
     faces += ENDS if tank.get("along") and not (tank.get("turned") or tank.get("periodic")) else ()
     faces += MESH if tank.get("mesh") else ()
-    faces = faces if kept.get("grains") is not None else ()
+    faces = faces if matters else ()
     parts = kept.get("parts", {}).items()
     bodies = tuple(name for name, part in parts if part.get("density") or part.get("mass"))
     rooms = (f"{name}.{room}" for name, part in parts if part.get("wall") for room in part.get("rooms") or (INSIDE,))

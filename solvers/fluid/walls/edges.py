@@ -195,7 +195,7 @@ def parting(points: np.ndarray, volumes: np.ndarray, tank: Tank, water: Water, e
     """
     outline, (_, along, normal) = tank.outline, _frame(tank.outline)
     own, count = edge_of(points, outline), len(outline)
-    other = _beside(points, own, tank, water.reach)
+    other = beside(points, own, tank, water.reach)
     found = Parting(other, np.zeros((len(points), 2, 2)), np.zeros((len(points), 2, 2)))
     for second in {(edge + end) % count for edge in edges for end in (0, 1)}:
         pair = np.array([(second - 1) % count, second])
@@ -223,7 +223,7 @@ def _frame(outline: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return lengths, along, np.stack([along[:, 1], -along[:, 0]], axis=1)
 
 
-def _beside(points: np.ndarray, own: np.ndarray, tank: Tank, reach: float) -> np.ndarray:
+def beside(points: np.ndarray, own: np.ndarray, tank: Tank, reach: float) -> np.ndarray:
     """The other edge (n,) that points see behind a corner near them, whose `own` edges (n,) these are; or OF_NONE."""
     outline, (lengths, along, normal) = tank.outline, _frame(tank.outline)
     other, count = np.full(len(points), OF_NONE), len(outline)

@@ -1,15 +1,17 @@
 """Gauges of water in space: discs in the faces of a prism, depths at places of its floor, forces on its faces."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from solvers.fluid.given import Gauge, Level
 from solvers.fluid.walls.faces import spot_on
+from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.water import GRAVITY, again, box
-from tests.oracles.water_in_space import pool
+from tests.oracles.water_in_space import PlainWaterInSpace, pool
 
 SIDES, ROWS, SPACING = (10, 11, 12), 8, 0.05
 WIDTH, ALONG, DEPTH = SIDES[0] * SPACING, SIDES[2] * SPACING, ROWS * SPACING
@@ -93,3 +95,92 @@ def test_a_level_gauge_shows_a_tilted_surface(run):
     wanted = [DEPTH + slopes @ (level.y, level.x) for level in LEVELS]
     assert reach == pytest.approx(3.0 * SPACING)
     np.testing.assert_allclose(found, wanted, atol=np.abs(slopes).sum() * 2.0 * reach * 3.0**0.5 / 36.0 / 27.0 + 1e-12)
+
+
+def stirred() -> Scene:
+    """A pool whose particles are off their lattice and move at random."""
+    scene, random = pool(SIDES, ROWS, SPACING, gauges=GAUGES, levels=LEVELS), np.random.default_rng(1)
+    drops = scene.fluid.particles
+    drops["position"] += 0.1 * SPACING * random.uniform(-1.0, 1.0, drops["position"].shape)
+    drops["velocity"] = 0.2 * random.uniform(-1.0, 1.0, drops["position"].shape)
+    return scene
+
+
+def by_hand(scene: Scene, r: np.ndarray, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Forces (N) and moments (N m) on the faces of a box (6, 6): floor, right, lid, left, ends at −x and x.
+
+    By double sums over water and walls; the part of each along y, z or x goes to the face with that normal which the
+    wall particle is behind, other parts to the first of the faces that it is behind.
+    """
+    water = scene.fluid.water
+    plain = PlainWaterInSpace(replace(scene, matters=(replace(scene.fluid, water=replace(water, gauges=())),)))
+    volume, on_wall = plain.volume(mass, s), plain.wall_pressure(r, mass, s)
+    _, _, value, gradient = plain.between(r, plain.wall)
+    push = np.maximum(1000.0 * water.sound_speed**2 * s, 0.0)[:, None] + on_wall
+    force = (push * volume[:, None] * plain.wall_volume)[..., None] * gradient
+    steep = np.einsum("i,iwa->wa", volume, gradient)
+    along = plain.is_straight * (steep - (steep * plain.normal).sum(axis=1, keepdims=True) * plain.normal)
+    strength = (plain.wall_volume * on_wall)[:, None] * along / np.maximum(volume @ value, 1e-30)[:, None]
+    force -= (volume[:, None] * value)[..., None] * strength
+    faces = np.array([[3, 1], [0, 2], [4, 5]])
+    off = plain.wall - np.clip(plain.wall, plain.lower, plain.upper)
+    of_axis = np.where(off == 0.0, 9, faces[np.arange(3), (off > 0.0).astype(int)])
+    found = np.zeros((6, 6))
+    for a in range(3):
+        bears, part = np.where(of_axis[:, a] < 9, of_axis[:, a], of_axis.min(axis=1)), np.zeros_like(force)
+        part[..., a] = force[..., a]
+        moment = np.cross(r[:, None], part)
+        for face in range(6):
+            found[face, :3] += part[:, bears == face].sum(axis=(0, 1))
+            found[face, 3:] += moment[:, bears == face].sum(axis=(0, 1))
+    return found
+
+
+def test_each_face_bears_what_double_sums_say(run):
+    """Forces and moments of a disturbed pool, to rounding."""
+    scene = stirred()
+    again(run, scene).advance(5)
+    run.observe()
+    p = run.water.particles
+    r, (s, mass) = np.stack(p.read(*p.place), axis=-1)[0], [one[0] for one in p.read(p.deviation, p.mass)]
+    run.advance(1)
+    found, wanted = run.observe()["face_force"][0], by_hand(scene, r, mass, s)
+    np.testing.assert_allclose(found, wanted, atol=1e-9 * np.abs(wanted).max())
+    assert (np.abs(wanted[[0, 1, 3, 4, 5], [1, 0, 0, 2, 2]]) > 10.0).all()
+
+
+def test_the_loads_on_all_faces_are_what_the_water_loses(run):
+    """Momentum changes by the weight and minus the sum over the faces, to rounding; the lid bears nothing."""
+    again(run, stirred()).advance(1)
+    run.observe()
+    p, steps = run.water.particles, 20
+    mass = p.read(p.mass)[0][0]
+    before = np.stack(p.read(*p.velocity), axis=-1)[0]
+    run.advance(steps)
+    rows, gained = run.observe(), np.stack(p.read(*p.velocity), axis=-1)[0] - before
+    faces = rows["face_force"][0]
+    pulled = mass.sum() * np.array([0.0, -GRAVITY, 0.0])
+    scale = np.abs(faces).max()
+    np.testing.assert_allclose(mass @ gained / (steps * run.dt), pulled - faces[:, :3].sum(axis=0), atol=1e-11 * scale)
+    np.testing.assert_allclose(faces.sum(axis=0), rows["wall_force"][0], atol=1e-12 * scale)
+    np.testing.assert_array_equal(faces[2], 0.0)
+
+
+def test_each_face_bears_the_pressure_on_it_at_rest(run):
+    """Floor and sides: ρ g H A and ρ g H² L/2, square to them, to what pressures at rest are off and what edges take.
+
+    Pressures are 2 % of ρ g H off at most; a face may miss a tenth of a spacing of the pressure at its edges, as in the
+    plane; water draws an upright wall by ρ g h² a metre where the push along it is not taken off, here everywhere,
+    since no wall particle is more than 1.5 reaches off all edges.
+    """
+    again(run, pool(SIDES, ROWS, SPACING, gauges=GAUGES, levels=LEVELS))
+    run.observe()
+    run.advance(300)
+    faces = run.observe()["face_force"][0]
+    floor, sides = HEAD * WIDTH * ALONG, 0.5 * HEAD * DEPTH * np.array([ALONG, ALONG, WIDTH, WIDTH])
+    drawn = 1000.0 * GRAVITY * (1.5 * SPACING) ** 2 * 2.0 * (WIDTH + ALONG)
+    edges = 0.1 * SPACING * HEAD * np.array([ALONG + DEPTH, ALONG + DEPTH, WIDTH + DEPTH, WIDTH + DEPTH])
+    found = np.array([faces[1, 0], -faces[3, 0], -faces[4, 2], faces[5, 2]])
+    np.testing.assert_array_less(np.abs(found - sides), edges + 0.02 * 2.0 * sides)
+    assert -faces[0, 1] == pytest.approx(floor, abs=drawn + 0.02 * floor)
+    np.testing.assert_allclose(found[::2], found[1::2], rtol=0.01)
