@@ -20,6 +20,7 @@ from solvers.fluid.diagnostics import Diagnostics, Pool
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import Fluid
 from solvers.fluid.inflow.inflow import Inflow
+from solvers.fluid.lists.capacity import Laid
 from solvers.fluid.lists.context import FluidContext
 from solvers.fluid.lists.grid import grid_round
 from solvers.fluid.lists.neighbours import Lists
@@ -86,7 +87,8 @@ class WaterMatter(Matter):
         of_parts = np.array(self.bodies.tanks, dtype=int)[self.bodies.solids.owner]
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, slots, layers.tanks, of_parts))
         self.bodies.join(arrays, p, self.order, ranges, self.poses, units)
-        self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, context.room)
+        laid = Laid(context.room, fluid.particles["position"], blocks)
+        self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, laid)
         self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.substeps)
         self.context = shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)
         tangential = TangentialCorrection(arrays, shared, layers, slots, scene.tanks)

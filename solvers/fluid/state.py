@@ -7,13 +7,15 @@ from solvers.fluid.given import Air, Water
 from solvers.fluid.terms.end_walls import MODES
 from solvers.machine.memory import KINDS
 from solvers.machine.quantity import PLANE, SPACE
-from solvers.machine.state import Axis, State, roomy
+from solvers.machine.state import Axis, State, roomy, snug
 from solvers.space.axes import named
 
 # Particles in a block: in the plane two AVX2 registers, or one of AVX-512, of 32-bit numbers; in space one of AVX2, as
 # there are twice the sums, and a block of 16 sees a quarter more neighbours that are none of most of its lanes
 LANES = {PLANE: 16, SPACE: 8}
-SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
+# Blocks for each full one, for those that a sparse surface leaves half empty; and for each strip, whose last block is
+SPARE, OF_STRIP = {PLANE: 1.5, SPACE: 1.25}, {PLANE: 2, SPACE: 1}
+LONG = 2**18  # lanes from which on arrays are no more than an eighth too long; in space they always are
 ROOM = 16384  # lanes for which there is room at least: tanks up to there, all together, share compiled kernels
 BESIDE = 64.0  # lanes of walls for the root of those of water: four rows round a tank that is longer than it is high
 COUNT, FLUID, WALLS = range(3)  # of the numbers that differ between tanks: particles, blocks that they may use, walls'
@@ -69,30 +71,34 @@ class Particles:
     ):
         self.axes, self.worlds, self.count, self.lanes = axes, worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
-        sizes = count, count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips, -(-walls // lanes)
-        self.fluid_blocks = roomy(sizes[FLUID], roomy(1, ROOM // lanes // (among or worlds)))
-        self.walls = sizes[WALLS]
-        self.wall_blocks = (
-            roomy(self.walls, roomy(1, int(BESIDE * (self.fluid_blocks * lanes) ** 0.5) // lanes)) if walls else 0
-        )
+        spared = int(SPARE[axes] * -(-count // lanes)) + OF_STRIP[axes] * strips
+        sizes = count, count if lanes == 1 else spared, -(-walls // lanes)
+        fitted = snug if axes > PLANE or sizes[FLUID] * lanes > LONG else roomy
+        self.fluid_blocks = fitted(sizes[FLUID], roomy(1, ROOM // lanes // (among or worlds)))
+        self.walls, beside = sizes[WALLS], roomy(1, int(BESIDE * (self.fluid_blocks * lanes) ** 0.5) // lanes)
+        self.wall_blocks = fitted(self.walls, beside) if walls else 0
         self.stride = self.fluid_blocks + self.wall_blocks
         blocks, own = Axis("block", worlds * self.stride), arrays.under("water")
+        # What walls have none of; of several worlds walls stand between the blocks of water
+        alone = axes > PLANE and (among or worlds) == 1
+        self.of_water = Axis("block", self.fluid_blocks if alone else blocks.length), Axis("lane", lanes)
         self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
         each = blocks, Axis("lane", lanes)
         self.place = own.wide(each, *named("place", self.axes), kind=own.place)
         self.velocity = own.wide(each, *named("velocity", self.axes))
-        self.deviation, self.mass = own.wide(each, "deviation", "mass")
+        self.deviation, self.mass = own.wide(self.of_water, "deviation", "mass")
         (self.number,) = own.wide(each, "number", kind=ti.i32)
         self.volume, self.pressure, self.eigenvalue = own.wide(each, "volume", "pressure", "eigenvalue")
         (self.firm,) = own.wide(each, "firm")
-        self.rate, self.rate_of_walls = own.wide(each, "rate", "rate_of_walls", kept=False)
-        self.acceleration = own.wide(each, *named("acceleration", self.axes))
+        (self.rate,) = own.wide(each, "rate", kept=False)
+        (self.rate_of_walls,) = own.wide(self.of_water, "rate_of_walls", kept=False)
+        self.acceleration = own.wide(self.of_water, *named("acceleration", self.axes))
         if shifting.acts:
             (self.eigenvalue_before,) = own.wide(each, "eigenvalue_before", kept=False)
             self.shift = own.wide(each, *named("shift", self.axes), kept=False)
         if shifting.carries:
             self.carried = own.wide(each, *named("carried", self.axes), kept=False)
-        self.gradient = own.wide(each, *named("gradient", self.axes))
+        self.gradient = own.wide(self.of_water, *named("gradient", self.axes))
         self.two = air is not None
         self.noted: list[ti.Field] = (
             [self.eigenvalue] if shifting.acts else []
@@ -173,8 +179,8 @@ class Particles:
             field.from_numpy(whole.reshape(-1, self.lanes))
 
     def by_world(self, values: np.ndarray) -> np.ndarray:
-        """The lanes of each world in a row, (W, stride · lanes)."""
-        return values.reshape(self.worlds, self.stride * self.lanes)
+        """The lanes of each world in a row, (W, stride · lanes), or those of water alone."""
+        return values.reshape(self.worlds, -1)
 
     def read(self, *fields: ti.Field) -> list[np.ndarray]:
         """Values (W, n) of these fields in the order of the particles' numbers; NaN of those that have not entered."""

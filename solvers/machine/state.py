@@ -90,6 +90,12 @@ def roomy(wanted: int, usual: int) -> int:
     return max(usual, 1 << max(0, wanted - 1).bit_length())
 
 
+def snug(wanted: int, usual: int, parts: int = 8) -> int:
+    """As `roomy` for long arrays: at least the `usual` length, and too long by no more than one of `parts`."""
+    step = max(1, (1 << max(0, wanted - 1).bit_length()) // (2 * parts))
+    return max(usual, -(-wanted // step) * step)
+
+
 def padded(values: np.ndarray, length: int) -> np.ndarray:
     """Values with zeros after them along the first axis, `length` in all."""
     return np.concatenate([values, np.zeros((length - len(values), *values.shape[1:]), values.dtype)])

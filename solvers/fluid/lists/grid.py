@@ -11,7 +11,7 @@ import numpy as np
 
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR
-from solvers.machine.quantity import DIRECTIONS
+from solvers.machine.quantity import DIRECTIONS, PLANE
 from solvers.tank.tank import Tank
 
 BIN = 0.5  # length of a bin, in spacings
@@ -101,18 +101,23 @@ class Grid:
     def arranged(self, points: np.ndarray, layer: np.ndarray | int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Points (n, D) that do not move, in blocks: slot of each (n,), lanes (blocks, lanes, D), first slots by key.
 
-        Each strip begins a new block. The slots of key k are from first[k] to first[k + 1] − 1, some of them unused.
+        Each strip begins a new block, and in space what lies farther on than a block gets long: walls on both sides of
+        a tank are in one strip. The slots of key k are from first[k] to first[k + 1] − 1, some of them unused.
         """
         key = self.key(points, layer)
         order = np.argsort(key, kind="stable")
         counts = np.bincount(key, minlength=self.strips * self.bins)
         first = np.zeros(len(counts) + 1, dtype=np.int32)
-        slot = 0
+        slot = begin = 0
         for k, count in enumerate(counts):
-            if k % self.bins == 0:
-                slot = -(-slot // self.lanes) * self.lanes
+            if count and slot % self.lanes == 0:
+                begin = k
+            if k % self.bins == 0 or (count and self.axes > PLANE and k - begin >= self.longest):
+                slot, begin = -(-slot // self.lanes) * self.lanes, k
             first[k] = slot
             slot += count
+            if slot // self.lanes != first[k] // self.lanes:
+                begin = k
         first[-1] = slot
         blocks = -(-slot // self.lanes)
         slots = np.empty(len(points), dtype=int)

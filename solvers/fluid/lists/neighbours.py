@@ -7,6 +7,7 @@ import taichi as ti
 
 from solvers.fluid.bodies.bodies import Bodies
 from solvers.fluid.constants import Constants
+from solvers.fluid.lists.capacity import SKIN, Laid, capacities
 from solvers.fluid.lists.listing import Listing
 from solvers.fluid.lists.order import ABREAST, BINS, ROWS, Order
 from solvers.fluid.lists.work_ranges import WorkRanges
@@ -17,11 +18,9 @@ from solvers.machine.units import Units
 from solvers.space.axes import UP, dot
 
 NEVER = 1e30  # m, a displacement that makes the lists invalid
-SKIN = (0.3, 1.2)  # spacings: the skin in a still tank, and in a violent one
 LASTING = 6  # steps for which a list should last: the skin follows from the speed at the last rebuild
 FASTER = 1.25  # what particles may gain in speed until the next step
 PLACES = {PLANE: 27, SPACE: 26}  # bits of an entry that number a slot; the others: the periodic image it is seen in
-CROWDED = 1.6  # times the neighbours of a square block at rest: room for those of long blocks and of dense impacts
 
 
 @ti.data_oriented
@@ -43,7 +42,7 @@ class Lists:
         constants: Constants,
         walls: np.ndarray,
         bodies: Bodies,
-        room: int,
+        laid: Laid,
     ):
         self.units, self.particles, self.ranges = units, order.particles, ranges
         self.order, self.constants, self.bodies, self.pieces = order, constants, bodies, 1 + bodies.count
@@ -54,31 +53,18 @@ class Lists:
         self.images = tuple(sum(3**a * (step + 1) for a, step in enumerate(steps)) for steps in product(*wraps))
         self.wall_first = own.holding("wall_first", padded(walls, order.keys), "key", ti.i32)
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.fluid_blocks, max(particles.wall_blocks, 1)))
-        crowd = room * self._crowd(order.grid.lanes, constants.smoothing, self.axes)
-        few = 4 * particles.wall_blocks * particles.lanes // units.a_world + wet  # blocks beside walls
         slots = particles.stride * particles.lanes  # of a world
         ends = (
             particles.worlds * slots if len(self.images) == 1 else 3**self.axes << self.bits,
             slots,
         )  # an image stands in front
-        self.near = Listing(arrays, units, "near", wet, crowd * wet, *ends)
-        beside = max(room * (8 * few + 64), crowd if self.axes > PLANE else 0)  # a corner sees mostly walls
-        self.beside = Listing(arrays, units, "beside", wet * self.pieces, beside, *ends)
-        self.facing = Listing(arrays, units, "facing", dry, crowd * dry, *ends)
+        room = capacities(laid, order.grid, units, particles, constants.smoothing)
+        self.near = Listing(arrays, units, "near", wet, room["near"], *ends)
+        self.beside = Listing(arrays, units, "beside", wet * self.pieces, room["beside"], *ends)
+        self.facing = Listing(arrays, units, "facing", dry, room["facing"], *ends)
         self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
         self.displacement = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
-
-    @staticmethod
-    def _crowd(lanes: int, smoothing: float, axes: int) -> int:
-        """Usual number of neighbours of a full block: what is within reach of its square or cube, with the widest skin.
-
-        By Steiner's formula for what is within a distance of a convex body.
-        """
-        side, far = lanes ** (1.0 / axes) if lanes > 1 else 0.0, 2.0 * smoothing + SKIN[1]
-        of_plane = side**2 + 4.0 * side * far + np.pi * far**2
-        of_space = side**3 + 6.0 * side**2 * far + 3.0 * np.pi * side * far**2 + 4.0 / 3.0 * np.pi * far**3
-        return int(CROWDED * (of_plane if axes == PLANE else of_space))
 
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
@@ -122,11 +108,25 @@ class Lists:
     @ti.func
     def rebuild(self, u):
         """Rebuild the lists of a unit, after its world was sorted; returns whether they fit."""
-        p = self.particles
         spacing = self.constants.get("spacing")
         skin = ti.max(SKIN[0] * spacing, ti.min(SKIN[1] * spacing, 2.0 * LASTING * self.last[u]))
         if ti.static(self.units.single):  # all worlds together are told one skin before they go on
             skin = SKIN[1] * spacing
+        fits = True
+        if ti.static(self.axes == PLANE or self.units.single):
+            fits = self.fill(u, skin)
+        else:
+            fits = False
+            for _ in range(2):
+                if not fits:
+                    fits = self.fill(u, skin)
+                    skin = SKIN[0] * spacing  # lists that do not fit may do so with less, which does not last as long
+        return fits
+
+    @ti.func
+    def fill(self, u, skin):
+        """Fill the lists of a unit, with a skin (m); returns whether they fit."""
+        p = self.particles
         reach, fits, found, walls = self.constants.get("reach") + skin, True, 0, 0
         first, end = self.ranges.fluid(u)
         for b in range(first, end):

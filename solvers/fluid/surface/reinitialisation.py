@@ -5,7 +5,7 @@ import taichi as ti
 
 from solvers.fluid.state import Particles
 from solvers.machine.quantity import PLANE
-from solvers.machine.state import Axis, State
+from solvers.machine.state import State
 
 SLOW = 0.01  # of δ c0/h, the rate at which diffusion evens the densities of neighbours
 FELT = 10.0  # of |ρ/ρ0 − 1|, the most that counts of F/F_0 − 1
@@ -48,8 +48,7 @@ class Reinitialisation:
         self.particles, self.constants = particles, constants
         self.acts = acts and constants.diffusion.acts
         if self.acts:
-            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
-            (self.drift,) = arrays.under("water").wide(each, "drift", kept=False)
+            (self.drift,) = arrays.under("water").wide(particles.of_water, "drift", kept=False)
 
     @staticmethod
     def numbers(kernel, water, axes: int = PLANE) -> dict[str, float]:

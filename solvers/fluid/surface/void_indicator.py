@@ -9,7 +9,7 @@ from solvers.fluid.surface.reinitialisation import Reinitialisation
 from solvers.fluid.terms.renormalisation import Renormalisation
 from solvers.fluid.terms.term import Sums, Term
 from solvers.machine.quantity import PLANE
-from solvers.machine.state import Axis, State
+from solvers.machine.state import State
 from solvers.space.axes import dot
 
 PACKING = 0.93  # packing threshold: F from which on water bears pressure, in the plane
@@ -50,8 +50,7 @@ class VoidIndicator(Term):
             self.lean, self.by_walls = sums.room(particles.axes), sums.room()
         self.reinitialisation = Reinitialisation(arrays, particles, constants, self.acts)
         if self.acts:
-            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
-            (self.indicator,) = arrays.under("water").wide(each, "void_indicator", kept=False)
+            (self.indicator,) = arrays.under("water").wide(particles.of_water, "void_indicator", kept=False)
 
     @staticmethod
     def numbers(kernel, length: float, sound: float, axes: int = PLANE) -> dict[str, float]:

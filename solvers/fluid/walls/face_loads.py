@@ -111,12 +111,13 @@ def groups_of(points: np.ndarray, tank: Tank, solid: Prism, reach: float) -> tup
 
     Sides with which the nearest one makes an edge count where a wall particle is behind their planes, too.
     """
-    outline, section = tank.outline, points[:, :2]
+    outline = tank.outline
+    section, place = np.unique(points[:, :2], axis=0, return_inverse=True)  # each is there many times along x
     own = _nearest(section, tank)
     ways = normals_of(tank, solid)[: len(outline), :2]
     other = beside(section, own, tank, reach)
     behind = ((section - outline[other]) * ways[other]).sum(axis=1) > 0.0
-    outside = ~tank.holds(section)
+    own, other, behind, outside = (one[place.ravel()] for one in (own, other, behind, ~tank.holds(section)))
     beyond = (np.abs(points[:, 2]) > 0.5 * solid.along) & (not solid.periodic)
     end = len(outline) + (points[:, 2] > 0.0)
     columns = np.stack(

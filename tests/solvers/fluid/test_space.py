@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import taichi as ti
 
-from solvers.fluid.lists import neighbours
+from solvers.fluid.lists import capacity
 from solvers.fluid.state import SPRAY
 from solvers.fluid.surface.void_indicator import PACKING, RAMP
 from solvers.machine import runtime
@@ -179,7 +179,7 @@ def test_a_slice_that_begins_alike_along_it_stays_so():
 @pytest.mark.slow
 def test_particles_that_move_one_by_one_see_the_weight_though_their_lists_must_grow(monkeypatch):
     """The first look takes a step back and forth; where lists grow in it the arrays are others then."""
-    monkeypatch.setattr(neighbours, "CROWDED", 0.2)
+    monkeypatch.setattr(capacity, "CROWDED", 0.2)
     run = Simulation(pool((6, 9, 6), 6, SPACING, schedule="per-grain"), threads=1, arch="cpu")
     load = run.observe()["wall_force"][0]
     mass = float(run.water.particles.mass.to_numpy().sum())
