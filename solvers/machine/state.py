@@ -250,9 +250,10 @@ class State(Scope):
         under another number: these are set to zero. An invalid index in another field raises ValueError, as a wrong
         shape does, before anything is written.
         """
-        whole = {name: self._checked(name, array, contents[name]) for name, array in self._kept()}
         for name, array in self._kept():
-            array.field.from_numpy(whole[name])
+            self._checked(name, array, contents[name])
+        for name, array in self._kept():  # once more, one by one: all of them at a time would take the memory twice
+            array.field.from_numpy(self._checked(name, array, contents[name]))
 
     @staticmethod
     def _checked(name: str, array: Array, values: np.ndarray) -> np.ndarray:
