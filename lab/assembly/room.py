@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from lab.base.errors import LabError
 from lab.base.memory import SHARE, machine_memory
 from lab.preset.schema import Preset
+from solvers.machine.quantity import PLANE, SPACE
 
 # Bytes per grain at the peak of a run, with its contacts and its share of the checkpoint and of the stored bed.
 # Measured as the difference between 60 beds and one: 1.7 kB for discs, 7 kB for grains of rice that are not settled.
 A_DISC, AN_OUTLINE = 2_000, 20_000
-A_DROP = 3_000  # bytes per particle of water
+A_DROP = {PLANE: 3_000, SPACE: 1_500}  # bytes per particle of water, at the peak (of space `lab.report.memory`)
 A_BED = 10  # fixed cost of a bed, as a number of grains
 
 
@@ -36,7 +37,7 @@ def check_room(preset: Preset, grains: int, drops: int = 0) -> None:
         grains, AN_OUTLINE if preset.shapes else A_DISC, _count_key(preset), "grain", "bed", "take fewer grains"
     )
     if drops:
-        load = Load(drops, A_DROP, "water.spacing", "particle of water", "tank", "take larger ones")
+        load = Load(drops, A_DROP[preset.axes], "water.spacing", "particle of water", "tank", "take larger ones")
     worlds, room, a_world = preset.run.repeats, SHARE * machine_memory(), (load.count + A_BED) * load.each
     if worlds * a_world <= room:
         return

@@ -192,6 +192,12 @@ class Bed:
         """Mean grain diameter, m."""
         return 2.0 * float(self.radius.mean())
 
+    def depths(self, time: float) -> dict[str, float]:
+        """What gauges of depth show (m) at a time (s), by name."""
+        names, series = list(self.footage.water.levels), self.footage.series_time
+        shown = self.footage.measured("level_depth")[:, self.world].T if names else []
+        return {name: float(np.interp(time, series, one)) for name, one in zip(names, shown, strict=True)}
+
     @cached_property
     def edges(self) -> Edges | None:
         """The edges of irregular grains, None if all are discs."""

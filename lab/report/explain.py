@@ -14,6 +14,7 @@ from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
 from lab.report import coarse, free, grains, water
+from lab.report.memory import memory_of
 from lab.report.ship import describe
 from lab.report.wet import bed
 from solvers.fluid.timestep import steps_of_water
@@ -227,7 +228,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
             * bool(count)
         ),
         *([("steps", f"{steps:.3g}")] if not preset.grains else []),
-        ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB{_each(simulation.arrays.bytes, count, what)}"),
+        ("memory", memory_of(simulation, worlds, count, what)),
         ("recording", _size(frames * worlds * count * 24 * (scene.axes - 1) / 2**20)),
         ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
         *([("", settling)] if preset.run.settles and preset.grains else []),
@@ -238,11 +239,6 @@ def _size(kept: float) -> str:
     """The size of a recording (MiB); of a large one, what would make it smaller."""
     pictures = "; nearly all of it pictures, of which a lower record.picture_rate keeps fewer" if kept > LARGE else ""
     return f"{kept:.0f} MiB{pictures}"
-
-
-def _each(size: int, count: int, what: str) -> str:
-    """The memory (bytes) of a world for each of its particles."""
-    return f", {size / count:.0f} bytes a {what}" if count else ""
 
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:

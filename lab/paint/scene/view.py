@@ -202,12 +202,8 @@ class SceneView:
         """The gauges of bed k, with the levels at the time of a frame."""
         if k not in self.marks:
             return
-        marks, footage, world = self.marks[k], self.beds[k].footage, self.beds[k].world
-        depths = {}
-        for level, name in enumerate(marks.pool.levels):
-            measured = footage.measured("level_depth")[:, world, level]
-            depths[name] = float(np.interp(self._time[frame], footage.series_time, measured))
-        marks.paint(picture, camera or self.tank_camera(k, frame), depths)
+        depths = self.beds[k].depths(self._time[frame])
+        self.marks[k].paint(picture, camera or self.tank_camera(k, frame), depths)
 
     def _thick(self, outline: np.ndarray, camera: Camera) -> float:
         return min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(outline, axis=0).min()))

@@ -29,7 +29,7 @@ class SpaceScene:
     walls: of the tank at rest; plates: the moving parts at rest, in the order of the parts; stance (F, W, 6): of the
     tank in the frames, series_stance (T, W, 6): in the series; part_stance (F, W, P, 6): of the parts in the tank;
     hull: the walls of the ship round it, in its axes, None without one; hulls: of those of the parts that are hulls,
-    by their numbers, their shapes and what is in them.
+    by their numbers, their shapes and what is in them; periodic: whether it is a slice without ends.
     """
 
     walls: Walls
@@ -39,6 +39,7 @@ class SpaceScene:
     part_stance: np.ndarray
     hull: Walls | None = None
     hulls: dict[int, tuple[PrismShape, Hull]] = field(default_factory=dict)
+    periodic: bool = False
 
     @classmethod
     def of(
@@ -90,7 +91,7 @@ def scene_in_space(preset: Preset, footage) -> SpaceScene | None:
         parts = [preset.parts[name] for name in footage.parts]
         drawn = [drawn_part(part, line, solid.along) for part, line in zip(parts, lines, strict=True)]
         hulls = {k: (shape_of(part), hull_of(part)) for k, part in enumerate(parts) if part.wall is not None}
-        found = replace(SpaceScene.of(walls, drawn, where, moves), hulls=hulls)
+        found = replace(SpaceScene.of(walls, drawn, where, moves), hulls=hulls, periodic=solid.periodic)
         return replace(found, hull=prism(footage.sea.hull, solid.along)) if preset.ship else found
     if isinstance(solid, Mesh):
         return SpaceScene.of(Walls.of(list(solid.points)), [], where, moves)

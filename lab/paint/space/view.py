@@ -17,6 +17,7 @@ from lab.paint.scene.overlay import TRAILS, Overlay
 from lab.paint.scene.trails import LEAST, THICK
 from lab.paint.scene.view import ARROW, NAME, ROOM, STILL, WALL, ViewSetting
 from lab.paint.space.camera import SpaceCamera, gaze_at, ground, orbit
+from lab.paint.space.gauges import SpaceMarks
 from lab.paint.space.marks import TurningAxes
 from lab.paint.space.painter import Skin, paint_space
 from lab.paint.space.raster.layers import Layers
@@ -62,6 +63,7 @@ class SpaceView:
             for bed in self.beds
         ]
         self._layers: dict[tuple, Layers] = {}  # by the size of the part of the picture
+        self.marks: dict[int, SpaceMarks] = {}
 
     def _place_beds(self) -> list[SpaceCamera]:
         """The camera of each bed for the points of the earth, from the first azimuth; and the cells."""
@@ -88,12 +90,18 @@ class SpaceView:
     def style(self, grains: Colouring | None, water: object, hues: Sequence[tuple]) -> None:
         """Say what the colours show."""
         self._colouring, self._water = grains, SpaceWater(self.beds, water.colouring)
+        for k, bed in enumerate(self.beds):
+            first = None if len(hues) == 1 else hues[k]
+            if marks := SpaceMarks.of(bed, self._theme.series, self.setting.unit, self._theme, first):
+                self.marks[k] = marks
 
     def paint_backdrop(self, page: np.ndarray) -> None:
         """What does not move: nothing, since the camera may go round."""
 
     def write_names(self, image: Image.Image, frame: int) -> None:
-        """No names stand in the view."""
+        """Write the names of gauges beside them."""
+        for k, marks in self.marks.items():
+            marks.name(image, self.tank_camera(k, frame))
 
     def draw_ends(self, image: Image.Image, frame: int) -> None:
         """Draw a band with the text on the loss of each ship lost so far, at the foot of her cell."""
@@ -116,6 +124,9 @@ class SpaceView:
             if part.size:
                 self._paint_bed(part, (left, top), k, frame)
                 picture[top:bottom, left:right] = part
+            if k in self.marks:
+                depths = self.beds[k].depths(self._time[frame])
+                self.marks[k].paint(picture, self.tank_camera(k, frame), depths)
             if self._moves:
                 self._paint_arrow(picture, k, frame)
 

@@ -42,12 +42,12 @@ class Marks:
         for name, gauge in self.pool.gauges.items():
             self._paint_sensor(picture, camera, gauge, self.hues[name], small)
         for name, level in self.pool.levels.items():
-            low, high = self._ends(level.y)
+            low, high = ends_at(self.outline, level.y)
             ends = camera.pixels(np.array([(level.y, low), (level.y, high)]))
-            paint_strokes(picture, _dashes(*ends, u), self.hues[name])
+            paint_strokes(picture, dashes(*ends, u), self.hues[name])
             if np.isfinite(depths.get(name, np.nan)):
                 surface = camera.pixels(np.array([(level.y, low + depths[name])]))[0]
-                _paint_dot(picture, surface, self.hues[name], 0.8 * u)
+                paint_dot(picture, surface, self.hues[name], 0.8 * u)
 
     def name(self, image: Image.Image, camera: Camera) -> None:
         """Write the gauges' names beside them, outside the tank."""
@@ -56,7 +56,7 @@ class Marks:
             return
         places = [(name, np.array(gauge.place), self._wall(gauge)[1]) for name, gauge in self.pool.gauges.items()]
         for name, level in self.pool.levels.items():
-            places.append((name, np.array([level.y, self._ends(level.y)[1]]), np.array([0.0, 1.0])))
+            places.append((name, np.array([level.y, ends_at(self.outline, level.y)[1]]), np.array([0.0, 1.0])))
         written: list[tuple[np.ndarray, np.ndarray]] = []
         for name, place, outwards in places:
             self._write(draw, camera, name, (place, outwards), written)
@@ -87,7 +87,7 @@ class Marks:
         ends = camera.pixels(np.array([middle - half * along, middle + half * along]))
         ends += BAR * u * (camera.pixels(outwards[None]) - camera.pixels(np.zeros((1, 2)))) / camera.scale
         paint_strokes(picture, np.array([[*ends[0], BAR * u, *ends[1], BAR * u]]), hue)
-        _paint_dot(picture, ends.mean(axis=0), hue, u)
+        paint_dot(picture, ends.mean(axis=0), hue, u)
 
     def _wall(self, gauge: Gauge) -> tuple[np.ndarray, np.ndarray]:
         """Directions along the wall that a gauge is in, and out of the tank."""
@@ -97,15 +97,6 @@ class Marks:
         away = np.linalg.norm(first + on[:, None] * edge - place, axis=1)
         along = edge[np.argmin(away)] / np.linalg.norm(edge[np.argmin(away)])
         return along, np.array([along[1], -along[0]])  # an outline runs counter-clockwise
-
-    def _ends(self, y: float) -> tuple[float, float]:
-        """Lowest and highest point (m) of the tank at a place y (m)."""
-        after = np.roll(self.outline, -1, axis=0)
-        crossed = (self.outline[:, 0] - y) * (after[:, 0] - y) <= 0.0
-        heights = []
-        for (y0, z0), (y1, z1) in zip(self.outline[crossed], after[crossed], strict=True):
-            heights += [z0, z1] if y0 == y1 else [z0 + (z1 - z0) * (y - y0) / (y1 - y0)]
-        return (min(heights), max(heights)) if heights else tuple(self.outline[:, 1][[0, 0]])
 
 
 def write_beside(
@@ -132,12 +123,23 @@ def hues_of(pool: Pool, series: Sequence[tuple] = palette.SERIES) -> dict[str, t
     return {name: series[k % len(series)] for k, name in enumerate(names)}
 
 
-def _paint_dot(picture: np.ndarray, at: np.ndarray, hue: tuple, u: float) -> None:
+def ends_at(outline: np.ndarray, y: float) -> tuple[float, float]:
+    """Lowest and highest point (m) of a tank with this outline (m, 2) m at a place y (m)."""
+    after = np.roll(outline, -1, axis=0)
+    crossed = (outline[:, 0] - y) * (after[:, 0] - y) <= 0.0
+    heights = []
+    for (y0, z0), (y1, z1) in zip(outline[crossed], after[crossed], strict=True):
+        heights += [z0, z1] if y0 == y1 else [z0 + (z1 - z0) * (y - y0) / (y1 - y0)]
+    return (min(heights), max(heights)) if heights else tuple(outline[:, 1][[0, 0]])
+
+
+def paint_dot(picture: np.ndarray, at: np.ndarray, hue: tuple, u: float) -> None:
+    """Paint a dot with a white ring at a pixel."""
     for radius, colour in ((DOT + RING, palette.PAPER), (DOT, hue)):
         paint_strokes(picture, np.array([[*at, radius * u, *at, radius * u]]), colour)
 
 
-def _dashes(first: np.ndarray, second: np.ndarray, u: float) -> np.ndarray:
+def dashes(first: np.ndarray, second: np.ndarray, u: float) -> np.ndarray:
     """Strokes (k, 6) of a dashed line between two pixels."""
     length = max(float(np.linalg.norm(second - first)), 1e-9)
     begin = np.arange(0.0, length, (DASH + SPACE) * u)
