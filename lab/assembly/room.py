@@ -10,7 +10,7 @@ from solvers.machine.quantity import PLANE, SPACE
 # Bytes per grain at the peak of a run, with its contacts and its share of the checkpoint and of the stored bed.
 # Measured as the difference between 60 beds and one: 1.7 kB for discs, 7 kB for grains of rice that are not settled.
 A_DISC, AN_OUTLINE = 2_000, 20_000
-A_DROP = {PLANE: 3_000, SPACE: 1_500}  # bytes per particle of water, at the peak (of space `lab.report.memory`)
+A_DROP = {PLANE: 3_000, SPACE: 1_500}  # bytes per particle of water, at the peak (of space `lab.base.memory`)
 A_BED = 10  # fixed cost of a bed, as a number of grains
 
 

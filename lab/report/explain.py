@@ -8,13 +8,13 @@ from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
 from lab.assembly.scene import build, largest_multiple
 from lab.assembly.water import most_drops, particles, updates
+from lab.base.memory import memory_of
 from lab.measures.ship_frozen import step_of
 from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
 from lab.report import coarse, free, grains, water
-from lab.report.memory import memory_of
 from lab.report.ship import describe
 from lab.report.wet import bed
 from solvers.fluid.timestep import steps_of_water

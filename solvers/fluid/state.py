@@ -7,7 +7,7 @@ from solvers.fluid.given import Air, Water
 from solvers.fluid.terms.end_walls import MODES
 from solvers.machine.memory import KINDS
 from solvers.machine.quantity import PLANE, SPACE
-from solvers.machine.state import Axis, State, roomy, snug
+from solvers.machine.state import Axis, State, roomy
 from solvers.space.axes import named
 
 # Particles in a block: in the plane two AVX2 registers, or one of AVX-512, of 32-bit numbers; in space one of AVX2, as
@@ -27,6 +27,12 @@ THINNEST = -0.8  # density deviation of air down to which it is drawn out; a par
 INSIDE = 0.75  # smallest eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
 SPRAY = 0.2  # smallest eigenvalue below which water is spray, which bears no suction (Marrone et al. 2010)
 UNUSED = -1  # number of an unused lane
+
+
+def snug(wanted: int, usual: int, parts: int = 8) -> int:
+    """As `roomy` for long arrays: at least the `usual` length, and too long by no more than one of `parts`."""
+    step = max(1, (1 << max(0, wanted - 1).bit_length()) // (2 * parts))
+    return max(usual, -(-wanted // step) * step)
 
 
 def allowed(eigenvalue: np.ndarray) -> np.ndarray:

@@ -84,16 +84,9 @@ class Array:
 def roomy(wanted: int, usual: int) -> int:
     """Length of an axis with room for `wanted` entries: the `usual` length, or the least power of two that is enough.
 
-    Kernels are compiled for the shapes of the arrays. Scenes whose arrays have the same few lengths, and keep in
-    arrays how much of them is used, share compiled kernels.
+    Kernels are compiled for the shapes of arrays: scenes whose arrays have the same few lengths share them.
     """
     return max(usual, 1 << max(0, wanted - 1).bit_length())
-
-
-def snug(wanted: int, usual: int, parts: int = 8) -> int:
-    """As `roomy` for long arrays: at least the `usual` length, and too long by no more than one of `parts`."""
-    step = max(1, (1 << max(0, wanted - 1).bit_length()) // (2 * parts))
-    return max(usual, -(-wanted // step) * step)
 
 
 def padded(values: np.ndarray, length: int) -> np.ndarray:
@@ -250,10 +243,11 @@ class State(Scope):
         under another number: these are set to zero. An invalid index in another field raises ValueError, as a wrong
         shape does, before anything is written.
         """
-        for name, array in self._kept():
-            self._checked(name, array, contents[name])
-        for name, array in self._kept():  # once more, one by one: all of them at a time would take the memory twice
-            array.field.from_numpy(self._checked(name, array, contents[name]))
+        for last in (False, True):  # twice, so that they do not all stand in memory once more
+            for name, array in self._kept():
+                checked = self._checked(name, array, contents[name])
+                if last:
+                    array.field.from_numpy(checked)
 
     @staticmethod
     def _checked(name: str, array: Array, values: np.ndarray) -> np.ndarray:

@@ -7,9 +7,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from solvers.fluid.lists.grid import Grid
-from solvers.fluid.state import FAR, Particles
+from solvers.fluid.state import FAR, Particles, snug
 from solvers.machine.quantity import PLANE
-from solvers.machine.state import snug
 from solvers.machine.units import Units
 
 SKIN = (0.3, 1.2)  # spacings: the skin in a still tank, and in a violent one

@@ -10,9 +10,9 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists.grid import Grid
-from solvers.fluid.state import COUNT, FAR, FLUID, ROOM, UNUSED, Particles
+from solvers.fluid.state import COUNT, FAR, FLUID, ROOM, UNUSED, Particles, snug
 from solvers.machine.quantity import PLANE
-from solvers.machine.state import Axis, State, roomy, snug
+from solvers.machine.state import Axis, State, roomy
 from solvers.space.axes import UP
 
 CHUNK = 256  # keys that one thread sums up
@@ -58,8 +58,8 @@ class Order:
         sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins, grid.rows, grid.rows // grid.ranks[0]
         self.axes, self.per_metre, self.period, self.origin = grid.axes, *grid.places
         # A particle of a full tank takes two keys, and there is room for twice as many; in space for those there are
-        twice = 2 * particles.fluid_blocks * particles.lanes
-        self.keys = roomy(sizes[KEYS] + 1, twice) if self.axes == PLANE else snug(sizes[KEYS] + 1, ROOM)
+        usual, fitted = (2 * particles.fluid_blocks * particles.lanes, roomy) if self.axes == PLANE else (ROOM, snug)
+        self.keys = fitted(sizes[KEYS] + 1, usual)
         self.chunks = -(-self.keys // CHUNK)
         own = arrays.under("water.order")
         self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
@@ -73,11 +73,10 @@ class Order:
         (self.first,) = own.integers(keys, "first", below=particles.fluid_blocks * particles.lanes + 1)
         (self.cursor,) = own.integers(keys, "cursor", kept=False)
         (self.chunk_first,) = own.integers((world, Axis("chunk", self.chunks)), "chunk_first", kept=False)
-        each = particles.of_water
-        self.key, self.source = own.wide(each, "key", "source", kind=ti.i32, kept=False)
+        each, names = particles.of_water, ("key", "source", "aside_number")
+        self.key, self.source, self.aside_number = own.wide(each, *names, kind=ti.i32, kept=False)
         (self.aside,) = own.wide(each, "aside", kept=False)
         (self.aside_place,) = own.wide(each, "aside_place", kind=own.place, kept=False)
-        (self.aside_number,) = own.wide(each, "aside_number", kind=ti.i32, kept=False)
 
     @ti.func
     def bin_of(self, y):

@@ -5,7 +5,7 @@ import pytest
 
 from solvers.fluid.lists import capacity
 from solvers.fluid.lists.capacity import Laid, counted
-from solvers.machine.state import snug
+from solvers.fluid.state import snug
 from solvers.simulation import Simulation
 from tests.oracles.water_in_space import pool
 
