@@ -204,37 +204,60 @@ class Forces:
     @ti.func
     def add_walls(self, block: ti.template(), listed, wall: ti.template(), sums: ti.template()):
         """Add what walls do to a block; each part in the tank bears its own."""
-        p, c, lists, begin = self.particles, self.constants, self.lists, listed * self.lists.pieces
+        p, lists, begin = self.particles, self.lists, listed * self.lists.pieces
         first = ti.static(self.lists.beside.first)
-        if ti.static(lists.pieces == 1):
+        if ti.static(lists.pieces == 1 and self.faces.count == 0):
             ends = [first[block.u, begin], first[block.u, begin + 1]]
-            if ti.static(self.faces.count > 0):
-                self.add_faces(block, ends, wall, sums)
-            else:
-                self.walls.add(block, 0, ends, wall, sums)
+            self.walls.add(block, 0, ends, wall, sums)
         else:
             for piece in range(lists.pieces):
                 ends = [first[block.u, begin + piece], first[block.u, begin + piece + 1]]
-                off = [p.zeros() for _ in ti.static(range(p.axes))]
-                self.walls.add(block, piece, ends, off, sums)
-                for a in ti.static(range(p.axes)):
-                    wall[a] += off[a]
-                if piece > 0 and ends[0] < ends[1]:
-                    force = p.load(p.volume, block.b) * c.get("slope")
-                    load = self.walls.on_walls(block, [force * off[a] for a in ti.static(range(p.axes))])
-                    self.bodies.bear(block.u, piece - 1, load)
+                if ti.static(self.faces.count > 0):
+                    self.add_faces(block, piece, ends, wall, sums)
+                else:
+                    off = [p.zeros() for _ in ti.static(range(p.axes))]
+                    self.add_piece(block, piece, ends, off, wall, sums)
+                    if piece > 0 and ends[0] < ends[1]:
+                        self.bear(block, piece, off)
 
     @ti.func
-    def add_faces(self, block: ti.template(), ends: ti.template(), wall: ti.template(), sums: ti.template()):
-        """As `add_walls`, for the entries between two `ends`; each face of the tank bears its own."""
+    def add_piece(
+        self,
+        block: ti.template(),
+        piece,
+        ends: ti.template(),
+        off: ti.template(),
+        wall: ti.template(),
+        sums: ti.template(),
+    ):
+        """Add what a piece, by entries between two `ends`, does to a block, `off` over V_i, also to that of all."""
+        self.walls.add(block, piece, ends, off, sums)
+        for a in ti.static(range(self.particles.axes)):
+            wall[a] += off[a]
+
+    @ti.func
+    def bear(self, block: ti.template(), piece, off: ti.template()):
+        """Have a part bear what it does to a block."""
+        p = self.particles
+        force = p.load(p.volume, block.b) * self.constants.get("slope")
+        load = self.walls.on_walls(block, [force * off[a] for a in ti.static(range(p.axes))])
+        self.bodies.bear(block.u, piece - 1, load)
+
+    @ti.func
+    def add_faces(self, block: ti.template(), piece, ends: ti.template(), wall: ti.template(), sums: ti.template()):
+        """As `add_walls`, for the entries of a piece between two `ends`; each face of the tank bears its own."""
         p, begin = self.particles, ends[0]
         for k in range(ends[0], ends[1]):
-            if self.faces.ends(block.u, k, ends[1]):
+            closes = k + 1 == ends[1]
+            if piece == 0 and not closes:
+                closes = self.faces.ends(block.u, k, ends[1])
+            if closes:
                 off = [p.zeros() for _ in ti.static(range(p.axes))]
-                self.walls.add(block, 0, [begin, k + 1], off, sums)
-                for a in ti.static(range(p.axes)):
-                    wall[a] += off[a]
-                self.faces.bear(block, k, off)
+                self.add_piece(block, piece, [begin, k + 1], off, wall, sums)
+                if piece == 0:
+                    self.faces.bear(block, k, off)
+                elif ti.static(self.bodies.count > 0):
+                    self.bear(block, piece, off)
                 begin = k + 1
 
     @ti.func

@@ -87,7 +87,8 @@ class WaterMatter(Matter):
         of_parts = np.array(self.bodies.tanks, dtype=int)[self.bodies.solids.owner]
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, slots, layers.tanks, of_parts))
         self.bodies.join(arrays, p, self.order, ranges, self.poses, units)
-        laid = Laid(context.room, fluid.particles["position"], blocks)
+        of_bodies = self.bodies.solids.places.reshape(-1, lanes, context.axes)
+        laid = Laid(context.room, fluid.particles["position"], np.concatenate([blocks, of_bodies]))
         self.lists = Lists(arrays, units, self.order, ranges, self.constants, first, self.bodies, laid)
         self.substeps = substeps = Substeps(arrays.under("water"), self.lists, fluid.substeps)
         self.context = shared = FluidContext(units, p, ranges, self.lists, self.constants, self.poses)

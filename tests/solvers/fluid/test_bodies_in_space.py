@@ -99,6 +99,13 @@ def dropped():
     run.close()
 
 
+def on_both(run: Simulation) -> np.ndarray:
+    """The present load (6, 2) N, N m of the water on the tank, all faces together, and on the body."""
+    loads = np.stack([field.to_numpy().sum(axis=0) for field in run.water.load.instant])
+    faces = run.scene.faces
+    return np.stack([loads[:, :faces].sum(axis=1), loads[:, faces]], axis=1)
+
+
 @pytest.mark.slow
 def test_what_water_loses_bodies_and_tank_gain(dropped):
     """Momentum and its moment are kept to 1e-12 of Σ|F|Δt; and the load on the body is the one that was solved for."""
@@ -112,7 +119,7 @@ def test_what_water_loses_bodies_and_tank_gain(dropped):
         centre = np.array([field.to_numpy()[0, 0] for field in bodies.place[:3]])
         weighs = mass @ np.stack(place, axis=1) + bodies.rows[0, 0] * centre  # kg m
         run.advance(1)
-        loads = np.stack([field.to_numpy().sum(axis=0) for field in run.water.load.instant])[:, :2]  # tank, body
+        loads = on_both(run)
         weight = (mass.sum() + bodies.rows[0, 0]) * down
         given += run.dt * (np.concatenate([weight, np.cross(weighs, down)]) - loads[:, 0])
         pushed += run.dt * np.abs(loads[:3]).sum()
@@ -149,7 +156,7 @@ def test_water_enters_a_hull_through_its_hole_alone():
         mass = p.read(p.mass)[0][0].sum() + run.parts.bodies.rows[0, 0]
         for step in range(200):
             run.advance(1)
-            loads = np.stack([field.to_numpy().sum(axis=0) for field in run.water.load.instant])[:3, :2]
+            loads = on_both(run)[:3]
             given += run.dt * (np.array([0.0, -mass * GRAVITY, 0.0]) - loads[:, 0])
             pushed += run.dt * np.abs(loads).sum()
             if step % 4 == 3:

@@ -44,7 +44,7 @@ def test_a_hull_without_a_cut_is_drawn_closed():
 
 
 def test_a_hole_is_left_out_of_both_sides_of_a_wall_and_of_the_cut():
-    """Half a disc of each plate, by a polygon of twelve strips, which is 2 % smaller; of the cut the hole's diameter."""
+    """Half a disc of each plate, to the 2 % that a polygon of twelve strips lacks; of the cut the diameter."""
     closed, holed = (areas(hull_walls(OUTER, hull, 0.5))[0] for hull in (CLOSED, HOLED))
     down = [np.abs(vectors[:, 1]).sum() for vectors in (closed, holed)]
     assert down[0] - down[1] == pytest.approx(2.0 * 0.5 * np.pi * 0.25, rel=0.03)
