@@ -38,6 +38,7 @@ def run() -> Iterator[Simulation]:
     made.close()
 
 
+@pytest.mark.slow
 def test_water_at_rest_has_the_pressure_of_its_depth_at_discs_in_all_faces(run):
     """To 2 % of ρ g H, as in the plane: what ten layers are asked; of a disc the mean is that of its middle."""
     run.observe()
@@ -78,6 +79,7 @@ def test_a_point_lies_in_the_face_that_is_nearest(point, face, room):
     assert (outside.face, outside.away) == (face, pytest.approx(0.01))
 
 
+@pytest.mark.slow
 def test_a_level_gauge_shows_a_tilted_surface(run):
     """z = H + b y + c x at the gauge, more than a kernel's reach R off the sides, where its kernel is even.
 
@@ -136,6 +138,7 @@ def by_hand(scene: Scene, r: np.ndarray, mass: np.ndarray, s: np.ndarray) -> np.
     return found
 
 
+@pytest.mark.slow
 def test_each_face_bears_what_double_sums_say(run):
     """Forces and moments of a disturbed pool, to rounding."""
     scene = stirred()
@@ -149,6 +152,7 @@ def test_each_face_bears_what_double_sums_say(run):
     assert (np.abs(wanted[[0, 1, 3, 4, 5], [1, 0, 0, 2, 2]]) > 10.0).all()
 
 
+@pytest.mark.slow
 def test_the_loads_on_all_faces_are_what_the_water_loses(run):
     """Momentum changes by the weight and minus the sum over the faces, to rounding; the lid bears nothing."""
     again(run, stirred()).advance(1)
@@ -166,6 +170,7 @@ def test_the_loads_on_all_faces_are_what_the_water_loses(run):
     np.testing.assert_array_equal(faces[2], 0.0)
 
 
+@pytest.mark.slow
 def test_each_face_bears_the_pressure_on_it_at_rest(run):
     """Floor and sides: ρ g H A and ρ g H² L/2, square to them, to what pressures at rest are off and what edges take.
 
