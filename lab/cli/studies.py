@@ -18,7 +18,7 @@ from lab.cli.options import (
 )
 from lab.preset.accuracy import LEVELS
 
-REPORTS = "granular", "shapes", "ship", "water", "coupled", "space", "wet"
+REPORTS = "granular", "shapes", "ship", "water", "coupled", "space", "wet", "flooding"
 
 
 @click.command("list")
@@ -102,6 +102,7 @@ def reproduce(
     cargolab reproduce coupled --quick          those with water in the tanks of ships
     cargolab reproduce space --quick            those with spheres in space
     cargolab reproduce wet --quick              those with water between grains
+    cargolab reproduce flooding --quick         bodies that float and flood in space
     cargolab reproduce granular --cluster tcp://node1:8786
     """
     from lab.studies.reproduce import reproduce as reproduced
