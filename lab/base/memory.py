@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from solvers.machine.memory import KINDS
 from solvers.machine.quantity import PLANE
 
 SHARE = 0.5  # of the machine's memory that a run may take
@@ -37,6 +36,8 @@ def memory_of(simulation, worlds: int, count: int, what: str) -> str:
     told = f"{worlds * size / 2**20:.1f} MiB" + (f", {size / count:.0f} bytes a {what}" if count else "")
     if simulation.scene.axes == PLANE or not simulation.water:
         return told
+    from solvers.machine.memory import KINDS  # here, since it loads Taichi, and a file that is refused does not need it
+
     kept = [array for array in simulation.arrays.arrays.values() if array.kept]
     copy = sum(int(np.prod(array.shape)) * np.dtype(KINDS[array.field.dtype]).itemsize for array in kept)
     peak = PROGRAM + worlds * (size + copy + BESIDE * count)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from solvers.fluid.lists.grid import Grid
 from solvers.fluid.state import FAR, Particles, snug
@@ -97,6 +96,8 @@ def images_of(points: np.ndarray, grid: Grid) -> np.ndarray:
 
 def fullest(lower: np.ndarray, upper: np.ndarray, points: np.ndarray, units: int, far: float) -> int:
     """How many points (n, D) m are within `far` (m) of the boxes of the fullest of so many units, by some of these."""
+    from scipy.spatial import cKDTree  # here, so that runs in the plane do not wait for it
+
     size, tree, most = -(-len(lower) // units), cKDTree(points), 0
     for u in range(units):
         blocks = np.arange(u * size, min(len(lower), (u + 1) * size))

@@ -14,9 +14,10 @@ from solvers.tank.parts import Part
 from solvers.tank.solids.solid import Prism
 from solvers.tank.tank import Tank
 
-NEAR = 4.0  # spacings from a body up to which water is packed
-FINER = 2  # times as fine wall particles as those of the run, which leave no gap where their images meet them
-STEPS = 300  # at most: what is left is far below what the first steps of a run even out
+NEAR = 3.0  # spacings from a body up to which water is packed
+FINER = 2  # times as fine as in the run are wall particles within DEEP of a face: they leave no gap at the surface
+DEEP = 2  # spacings
+STEPS = 60  # at most: what is left is far below what the first steps of a run even out
 
 
 def packed_round(
@@ -34,13 +35,13 @@ def packed_round(
     count = len(lattice) - sum(shape.below(level) for shape in shapes) / volume
     if count < 1.0:
         raise ValueError("the bodies leave no room for a particle of this spacing")
-    away = _away(lattice, shapes)
+    away, wet = _away(lattice, shapes), [shape for shape in shapes if shape.bounds[0][1] < level]
     kept = np.argsort(-away, kind="stable")[: round(count)]
     points, away = lattice[np.sort(kept)], away[np.sort(kept)]
-    near = away < NEAR * spacing
+    near = _away(points, wet) < NEAR * spacing if wet else np.zeros(len(points), dtype=bool)
     if near.any():
         tank = PrismLayers(water, Tank(polygon, 1.0), Prism(along))
-        points[near] = _packed(points, near, level, volume, water, shapes, tank)
+        points[near] = _packed(points, near, level, volume, water, wet, tank)
     return points, volume * count / round(count)
 
 
@@ -64,8 +65,14 @@ def _packed(
     low, high = points[near].min(axis=0) - 2.0 * reach, points[near].max(axis=0) + 2.0 * reach
     others = points[~near]
     others = others[((others > low) & (others < high)).all(axis=1)]
-    fine = replace(water, spacing=spacing / FINER, smoothing=FINER * water.smoothing)
-    shells = [shell(shape, fine, FINER * rows) for shape in shapes]
+    fine, shells = replace(water, spacing=spacing / FINER, smoothing=FINER * water.smoothing), []
+    for shape in shapes:
+        for (places, volumes, depths, *_), behind in (
+            (shell(shape, fine, FINER * DEEP), False),
+            (shell(shape, water, rows), True),
+        ):
+            kept = (depths > DEEP * spacing) == behind
+            shells.append((places[kept], volumes[kept]))
     walls = np.concatenate([others, tank.points, *(one[0] for one in shells)])
     volumes = np.concatenate([np.full(len(others), volume), tank.volumes, *(one[1] for one in shells)])
     below = walls[:, 1] < level

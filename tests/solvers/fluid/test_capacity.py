@@ -15,7 +15,7 @@ SPACING = 0.05
 STEPS = 12
 
 
-@pytest.mark.parametrize("periodic", [(), ("x",)])
+@pytest.mark.parametrize("periodic", [("x",), pytest.param((), marks=pytest.mark.slow)])
 def test_the_entries_are_counted_as_lists_have_them_at_the_start(periodic):
     """All blocks of so small a tank are looked at, so the numbers are those of the lists."""
     run = Simulation(pool((10, 9, 12), 6, SPACING, periodic=periodic), threads=1, arch="cpu")
@@ -43,6 +43,7 @@ def run_of(monkeypatch, more: float) -> tuple[Simulation, np.ndarray]:
     return run, place
 
 
+@pytest.mark.slow
 def test_lists_that_do_not_fit_have_the_least_skin_and_then_more_room(monkeypatch):
     """Water that moves fast asks for a wide skin. With room for the least alone it has that, with less room it gets
     more: where it goes does not depend on it, to the rounding of sums in another order.

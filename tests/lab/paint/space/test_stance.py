@@ -26,7 +26,7 @@ def test_a_recorded_pose_is_turned_into_a_stance_once():
     still = np.zeros((1, 1, 0, 3))
     footage = SimpleNamespace(
         pose=pose, series_pose=pose, outline=np.array([[-1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-1.0, 1.0]]),
-        open_edges=(), parts={}, part=still, part_turn=still,
+        open_edges=(), parts={}, part=still, part_turn=still, part_pitch_yaw=None,
     )  # fmt: skip
     preset = SimpleNamespace(tank=SimpleNamespace(solid=Prism(1.0)), ship=None)
     found = scene_in_space(preset, footage).stance[0, 0]
