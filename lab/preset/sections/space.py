@@ -105,6 +105,8 @@ def _faults_of_water(preset, key_of_space: str) -> Iterator[tuple[str, str]]:
     beside = {name: bool(getattr(preset, name)) for name in ("grains", "air", "ship", "damping", "inflow")}
     for name in (name for name, there in beside.items() if there):
         yield name, f"in space water is alone in its tank so far; leave this out, or {key_of_space}"
+    if preset.bodies and not is_convex(tank.corners):
+        yield "tank.outline", "a body that floats in space touches a tank whose corners all point outwards; draw one so"
     for name, part in preset.parts.items():
         if part.radius is None and part.along is None:
             yield f"parts.{name}", "in space water has solid bodies alone in it; give its length along x, or its radius"
@@ -178,3 +180,11 @@ def _is_even(lines: Sequence[Sequence[Point]], one: Sequence[Point] | None = Non
     slack = EVEN * max(float(np.ptp(sought, axis=0).max()), 1e-300)
     found = (np.array(sorted(line)) for line in lines if len(line) == len(sought))
     return any(np.allclose(line, sought, rtol=0.0, atol=slack) for line in found)
+
+
+def is_convex(corners: Sequence[Point]) -> bool:
+    """Whether all corners of a polygon turn the same way."""
+    way = np.roll(np.array(corners), -1, axis=0) - np.array(corners)
+    after = np.roll(way, -1, axis=0)
+    turn = way[:, 0] * after[:, 1] - way[:, 1] * after[:, 0]
+    return bool((turn >= 0.0).all() or (turn <= 0.0).all())

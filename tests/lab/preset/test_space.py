@@ -164,3 +164,11 @@ def test_a_bed_starts_level():
     layer = np.count_nonzero(np.abs(place[:, 1] - place[:, 1].max()) < 0.25 * loaded.mean_diameter)
     most = 3.0 * np.sqrt(layer / 12.0) * loaded.tank.width / len(place)
     assert abs(place[:, 0].mean()) < most
+
+
+def test_a_body_floats_only_in_a_tank_whose_corners_point_outwards():
+    """The faces that it touches are planes without ends."""
+    notched = ["-0.25 m", "0 m"], ["0.25 m", "0 m"], ["0.25 m", "0.6 m"], ["0 m", "0.55 m"], ["-0.25 m", "0.6 m"]
+    changes = {"tank.width": False, "tank.height": False, "tank.outline": [list(corner) for corner in notched]}
+    with pytest.raises(LabError, match=r"tank\.outline: a body that floats in space"):
+        load("flooding/cabin", changes)
