@@ -4,7 +4,7 @@ import pytest
 
 from lab.assembly import ship_tables
 from lab.report import plots
-from solvers.fluid.start import packing
+from solvers.fluid.start import packing, round_bodies
 from solvers.machine import runtime
 
 PANELS = 32  # of 80: a tenth of the time; the tests of the potential flow say how it converges
@@ -47,5 +47,6 @@ def roughly_packed(monkeypatch):
     """Water that is not evened out before the start, for tests that only ask whether scenes can be built, and so on."""
     packing._packed.cache_clear()
     monkeypatch.setattr(packing, "STEPS", 2)
+    monkeypatch.setattr(round_bodies, "STEPS", 2)
     yield
     packing._packed.cache_clear()

@@ -54,7 +54,7 @@ def heave_off(one: Outcome, after: float) -> float:
     return float(np.abs(place[time >= after, Z]).max() / one.recording.preset.water.spacing)
 
 
-def largest_roll(one: Outcome, _: object) -> float:
+def roll_at_most(one: Outcome, _: object) -> float:
     """The largest roll (deg)."""
     return float(np.degrees(np.abs(places(one)[1][:, ROLL]).max()))
 
@@ -96,7 +96,7 @@ NUMBERS = {
     "swing": ("1", swing),
     "swing_end": ("s", swing_end),
     "heave_off": ("1", heave_off),
-    "largest_roll": ("deg", largest_roll),
+    "roll_at_most": ("deg", roll_at_most),
     "heel_then": ("deg", heel_then),
     "sway_then": ("mm", sway_then),
     "inside_then": ("kg", inside_then),
