@@ -3,6 +3,9 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+from solvers.bulk.given import Bulk
+from solvers.bulk.matter import make_bulk
+from solvers.bulk.timestep import limits_of_bulk
 from solvers.fluid.given import Fluid
 from solvers.fluid.making import make_water
 from solvers.fluid.timestep import limits_of_water
@@ -23,6 +26,7 @@ __all__ = ["MATTERS", "context_of", "limits_of", "made", "make_exchange"]
 MATTERS: dict[type[Given], tuple[Callable[..., list[Limit]], tuple[Callable[..., Matter | None], ...]]] = {
     Grains: (limits_of_grains, (make_grains,)),
     Fluid: (limits_of_water, (make_water, make_liquid)),
+    Bulk: (limits_of_bulk, (make_bulk,)),
 }
 
 

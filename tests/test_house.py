@@ -27,6 +27,7 @@ FLOORS = {  # from the ground up: a room imports those before it
         "fluid",
         "liquid",
         "mixture",
+        "bulk",
         "matters",
         "time",
         "scene",

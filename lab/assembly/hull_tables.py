@@ -18,7 +18,7 @@ from math import sqrt
 import numpy as np
 
 from lab.assembly import hull_flow, ship_tables
-from lab.assembly.offsets import from_offsets
+from lab.assembly.lines.offsets import from_offsets
 from lab.assembly.ship_tables import SOLVED_BY, kept
 from lab.base.errors import LabError
 from lab.preset.sections import ship as ships

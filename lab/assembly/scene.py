@@ -6,11 +6,21 @@ from math import ceil
 
 import numpy as np
 
+from lab.assembly.bulk import bulk_of, points_of
 from lab.assembly.collisions import known_collisions
 from lab.assembly.grains import check_laden, check_softness, grain_count, grains_of, rooms_of_bodies
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
-from lab.assembly.water import fluid_of, mixture_of, most_drops, particles, soaked_by, water_aboard
+from lab.assembly.water import (
+    air_volumes_of,
+    fluid_of,
+    mixture_of,
+    most_drops,
+    particles,
+    soaked_by,
+    volumes_of,
+    water_aboard,
+)
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.parts import parts_of
@@ -24,7 +34,7 @@ from solvers.scene import Scene
 from solvers.ship.vessel import Vessel
 
 # What the solver is told of each matter beside grains, whose places are found with them
-OTHERS = {"water": fluid_of}
+OTHERS = {"water": fluid_of, "bulk": bulk_of}
 # A step twice the derived one suits closing speeds of a 32nd; four times is more than the Rayleigh time ever allows.
 LONGEST_STRIDE = 2
 LARGEST_POWER = (
@@ -72,6 +82,11 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     if preset.grains and preset.grains.listed and preset.run.settles:  # without settling, overlaps may be intended
         position = np.tile(relaxed_start(scene, position[0]), (worlds, 1, 1))
     return scene, position
+
+
+def volumes(scene: Scene) -> dict[str, np.ndarray | None]:
+    """The volumes (W, n) m² of particles of water and air, and of points of bulk, as a recording has them."""
+    return {"volume": volumes_of(scene), "air": air_volumes_of(scene), "bulk": points_of(scene)}
 
 
 def vessels(preset: Preset) -> list[Vessel]:

@@ -211,8 +211,9 @@ def air_volumes_of(scene: Scene) -> np.ndarray:
 
 def updates(scene: Scene, steps: int) -> int:
     """How often particles are moved, one by one, in so many base steps of all worlds."""
-    of_grains = scene.grains.count * steps if scene.grains else 0
-    return scene.worlds * (of_grains + steps_of_water(scene, steps) * scene.particles)
+    at_once = sum(matter.count for matter in scene.matters if matter is not scene.fluid)
+    in_water = steps_of_water(scene, steps) * scene.particles if scene.fluid else 0
+    return scene.worlds * (at_once * steps + in_water)
 
 
 def particles(scene: Scene) -> int:

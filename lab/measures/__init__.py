@@ -16,6 +16,7 @@ from types import ModuleType
 
 from lab.measures import (
     axle_roll,
+    bulk_shift,
     centre_of_mass,
     collapse,
     contact_number,
@@ -90,6 +91,7 @@ MEASURES = (
     swelling,
     top_altitude,
     centre_of_mass,
+    bulk_shift,
     collapse,
     onset,
     settlement,

@@ -20,10 +20,10 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band, mean_label
+from lab.measures.loose import is_loose, loose_mass
 from lab.measures.naval_levers import draw_levers
 from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
-from lab.measures.wall_force import grain_mass
 from lab.naval import sheet
 from lab.naval.condition import Condition, condition
 from lab.recording import Recording
@@ -34,7 +34,6 @@ from solvers.ship.hydrostatics import Loading, balanced_heave
 from solvers.ship.naval.grain_code import ASSUMED, residual
 from solvers.ship.section import Section
 
-OF = "grains"
 LAST = 0.1  # of a run: over it the final shift is averaged
 FULL = 0.999  # of a hold: more than this is no level filling any more
 LISTS = 201  # times at which her list is drawn
@@ -113,7 +112,7 @@ def _surface(found: Condition) -> str:
 
 def shift(recording: Recording) -> Shift | None:
     """The shift of a recording's cargo; None where the bed is no level filling or the ship cannot be judged."""
-    return _shift(str(recording.path), len(recording.series["time"])) if recording.preset.grains else None
+    return _shift(str(recording.path), len(recording.series["time"])) if is_loose(recording) else None
 
 
 @lru_cache(maxsize=4)
@@ -125,7 +124,7 @@ def _shift(path: str, _rows: int) -> Shift | None:
         centre = np.array(recording.series["centre_of_mass"], dtype=float)[..., :PLANE]
         if vessel is None or not len(centre):
             return None
-        mass = float(grain_mass(recording).sum(axis=1).mean())
+        mass = float(loose_mass(recording).mean())
         hold = Section(recording.outline)
     try:
         area = level_area(hold, float(centre[0, :, 1].mean()))

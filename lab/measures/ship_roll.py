@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band, error_of, median_band, swing, thinned
+from lab.measures.loose import is_loose
 from lab.measures.ship import (
     LEAST_CROSSINGS,
     has_ship,
@@ -148,10 +149,10 @@ def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -
         band(panels[1, 0], time, 1e3 * moved[..., 1], GREEN, "heave of the axis")
         panels[1, 0].set_ylabel("sway, heave\n(mm)")
     if laden:
-        cargo = "centre_of_mass" if "grains" in laden else "water_centre"
+        cargo = "centre_of_mass" if is_loose(recording) else "water_centre"
         centre = 1e3 * recording.series[cargo][..., 0]
         band(lower, time, centre - centre[0], VERMILION)
-        lower.set_ylabel(f"shift of the\n{'cargo' if 'grains' in laden else 'water'} (mm)")
+        lower.set_ylabel(f"shift of the\n{'cargo' if is_loose(recording) else 'water'} (mm)")
     lower.set_xlabel(f"time (s); axis: {axis_place(recording.preset.ship)}")
     lower.set_xlim(time[0], time[-1] + (MARGIN * np.ptp(time) if any(ends(recording.series)) else 0.0))
 

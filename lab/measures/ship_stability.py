@@ -11,9 +11,9 @@ import numpy as np
 
 from lab.assembly.ship import flooding_angles
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, mark
+from lab.measures.loose import is_loose, loose_mass
 from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
-from lab.measures.wall_force import grain_mass
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import outline_of
 from lab.recording import Recording
@@ -55,9 +55,9 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     frozen = righting_levers(load.section, loading, load.water, heel)
     if not recording.preset.matters:
         return heel, frozen, None
-    if "grains" not in recording.preset.matters:
+    if not is_loose(recording):
         return heel, frozen, _with_level_water(recording.preset, vessel, heel)
-    cargo = float(grain_mass(recording).sum(axis=1).mean()) * recording.preset.a_metre
+    cargo = float(loose_mass(recording).mean()) * recording.preset.a_metre
     repose = recording.preset.ship.repose
     try:
         hold = Section(recording.outline)
@@ -102,7 +102,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     axes.plot(np.degrees(heel), 1e3 * lever, color=GREY, label="cargo frozen" if recording.preset.matters else "empty")
     if relaxed is not None:
         label = f"cargo slid to a repose of {np.degrees(recording.preset.ship.repose):.3g} deg"
-        if "grains" not in recording.preset.matters:
+        if not is_loose(recording):
             label = "water level in the tanks"
         axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=label)
     axes.axhline(0, color=GREY, lw=0.8)

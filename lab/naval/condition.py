@@ -24,6 +24,7 @@ from solvers.ship.naval.weather import Exposed
 from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
+from solvers.tank.outline import area_below
 
 HEELS = np.radians(np.arange(-60.0, 91.0))
 
@@ -203,7 +204,7 @@ def _angle(found: float | None, points: tuple) -> float | None:
 
 def _stowed(preset: Preset, form: Form, scale: float, level: float | None, mass: float | None):
     """The hold, its heights from the keel, and the grain in it; None and None without grain."""
-    if preset.grains is None:
+    if preset.grains is None and preset.bulk is None:
         return None, None
     keel = float(preset.ship.corners[:, 1].min())
     shift = np.array(preset.ship.hold) - [0.0, keel]
@@ -223,12 +224,13 @@ def _stowed(preset: Preset, form: Form, scale: float, level: float | None, mass:
 
 def level_of(preset: Preset) -> float | None:
     """Height (m, the tank's axes) of the level filling that the preset asks for; None where only a run tells it."""
-    if preset.grains.depth is None:
-        return None
-    return float(np.array(preset.tank.corners)[:, 1].min()) + preset.grains.depth
+    depth = (preset.grains or preset.bulk).depth
+    return None if depth is None else float(np.array(preset.tank.corners)[:, 1].min()) + depth
 
 
 def slab_mass(preset: Preset) -> float:
-    """Mass (kg) of the preset's grains, spheres of the mean cube of their diameters."""
+    """Mass (kg) of the preset's grains, spheres of the mean cube of their diameters, or of its bulk."""
+    if preset.bulk:
+        return preset.bulk.density * preset.thickness * area_below(np.array(preset.tank.corners), preset.bulk.depth)
     mean_cube = preset.mean_diameter**3 * (1.0 + preset.grains.spread**2)  # of a uniform spread
     return grain_count(preset) * np.pi / 6.0 * preset.material.density * mean_cube

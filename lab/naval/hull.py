@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.offsets import read_offsets
+from lab.assembly.lines.offsets import read_offsets
 from lab.base.errors import LabError
 from lab.naval import tables
 from lab.naval.lengths import between

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from lab.assembly.offsets import rows_of, text_of
+from lab.assembly.lines.offsets import rows_of, text_of
 from lab.base.errors import LabError
 from lab.base.files import write_text
 from solvers.machine.errors import Unavailable

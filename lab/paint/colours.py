@@ -16,7 +16,7 @@ from lab.base.errors import LabError
 from lab.paint.cargo.looks import looks
 from lab.paint.cargo.style import CargoColours, aboard_of
 from lab.paint.space.stance import lengths
-from lab.preset.sections.video import OF_AIR, OF_WATER, OF_WET
+from lab.preset.sections.video import OF_AIR, OF_BULK, OF_WATER, OF_WET
 from lab.recording.contacts.stress import pressures
 
 if TYPE_CHECKING:
@@ -195,7 +195,7 @@ def colouring(name: str, beds: Sequence[Bed], dark: bool = False) -> Colouring |
 
     dark: for dark paper. Where the name is one of a colour of water, grains look like their cargo.
     """
-    if name not in MODES and name not in (*OF_WATER, *OF_AIR, *OF_WET):
+    if name not in MODES and name not in (*OF_WATER, *OF_AIR, *OF_WET, *OF_BULK):
         raise LabError(f"Unknown colour '{name}': choose one of {', '.join(MODES)}.")
     filled = [bed for bed in beds if not bed.empty]
     found = MODES.get(name, cargo)(filled) if filled else None

@@ -55,7 +55,7 @@ def plots(beds: Sequence[Bed], hues: Sequence[tuple], series: Sequence[tuple] = 
 def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
     """The main quantity of beds of grains, of empty tanks and of ships, against time or a steady tilt."""
     afloat = any(bed.footage.sea for bed in beds)
-    still = afloat or any(bed.empty for bed in beds)
+    still = afloat or any(_is_hollow(bed) for bed in beds)
     steady = not still and all(monotonic(bed.footage.series_pose[:, bed.world, ROLL]) for bed in beds)
     label, measured = _quantity(beds)
     plot = Plot(("tilt φ (°)" if steady else "time (s)", label))
@@ -192,23 +192,30 @@ def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
     """The quantity of the plot, the same for all beds: its label and a function to the values (T,) of a bed.
 
     The roll of ships; of empty tanks what moves; the spilled grains if there are any; else the shift of the centre of
-    mass, upwards if only heave or parts can move the grains, sideways otherwise.
+    mass, upwards if only heave or parts can move the grains, sideways otherwise. With bulk it is in % of the width.
     """
     if any(bed.footage.sea for bed in beds):
         return _coordinate(2)
-    if any(bed.empty for bed in beds):
+    if any(_is_hollow(bed) for bed in beds):
         ways = [np.ptp(bed.footage.series_pose[:, bed.world], axis=0) for bed in beds]
         return _coordinate(max((2, 0, 1), key=lambda axis: max(way[axis] for way in ways) > TOLERANCE))
-    if any(bed.footage.spilled[:, bed.world].any() for bed in beds):
+    of_bulk = any(bed.footage.bulk is not None for bed in beds)
+    if not of_bulk and any(bed.footage.spilled[:, bed.world].any() for bed in beds):
         return "spilled (%)", lambda bed: 100 * bed.footage.spilled[:, bed.world] / len(bed.radius)
     upright = not any(np.ptp(bed.footage.series_pose[:, bed.world, ::2], axis=0).any() for bed in beds)
     axis = 1 if upright else 0
 
     def shift(bed: Bed) -> np.ndarray:
         centre = bed.footage.centre_of_mass[:, bed.world, axis]
-        return (centre - centre[0]) / bed.diameter
+        unit = 0.01 * float(np.ptp(bed.footage.outline[:, 0])) if of_bulk else bed.diameter
+        return (centre - centre[0]) / unit
 
-    return f"shift Δ{'yz'[axis]} (diameters)", shift
+    return f"shift Δ{'yz'[axis]} ({'% of width' if of_bulk else 'diameters'})", shift
+
+
+def _is_hollow(bed: Bed) -> bool:
+    """Whether there are neither grains nor bulk."""
+    return bed.empty and bed.footage.bulk is None
 
 
 def _coordinate(axis: int) -> tuple[str, Callable[[Bed], np.ndarray]]:

@@ -8,6 +8,7 @@ from PIL import Image
 
 from lab.base.errors import LabError
 from lab.paint import decorations as deco
+from lab.paint.bulk.layer import BulkLayer
 from lab.paint.colours import bed_colours, colouring
 from lab.paint.curves import TOLERANCE, plots
 from lab.paint.footage import Bed
@@ -73,9 +74,10 @@ class Film:
         drawn = plots(self._one(self._all), self._one(self._hues[: len(self._beds)]), series)
         self._lay_out(len(drawn), grains)
         self._water = WaterLayer(self._beds, look.colour, self._layout.unit)
-        self._bar = self._water.colouring or grains
+        self._bulk = BulkLayer(self._beds, look.colour, self._layout.unit)
+        self._bar = self._bulk.colouring or self._water.colouring or grains
         self._view = self._make_view()
-        self._view.style(grains, self._water, self._hues[: len(self._beds)])
+        self._view.style(grains, self._water, self._bulk, self._hues[: len(self._beds)])
         self._panel = Panel(self._layout, self._theme, self.time, self._moved, self._together)
         self._panel.prepare(drawn)
         self._inset = Inset.of(self._view, self._beds[0], look.inset, self._layout)

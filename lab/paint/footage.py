@@ -27,7 +27,9 @@ from solvers.grains.pressing import Pressing
 from solvers.grains.quantities import FRAMES
 from solvers.machine.quantity import flat
 
-RATES = {"position": "velocity", "water_position": "water_velocity"}  # rates of change among the recorded quantities
+RATES = {
+    f"{what}position": f"{what}velocity" for what in ("", "water_", "bulk_")
+}  # rates of change among the recorded quantities
 LEAST = 1e-9  # share of the time between two frames
 NO_GRAINS = {quantity.name: np.zeros((0, *quantity.shape)) for quantity in FRAMES}  # of an empty tank
 
@@ -40,9 +42,9 @@ class Footage:
     outlines of irregular grains, None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges:
     those without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2):
     their displacements, m; hold: the room of a floating hull that the grains are in, None if they are in the tank;
-    matters: the keys of what the tank holds; water: its particles' volume and gauges, None without water;
-    sea: the ship and her waves if the tank is a ship's hold, rail: that of a tank on an axle, else None;
-    space: walls, parts and where all stand of a scene in space, whose vectors are y, z, x; None in the plane;
+    matters: the keys of what the tank holds; water: its particles' volume and gauges, bulk: volumes (W, n) m² of its
+    points, both None without; sea: the ship and her waves if the tank is a hold, rail: that of a tank on an axle, else
+    None; space: walls, parts and where all stand of a scene in space, whose vectors are y, z, x; None in the plane;
     ends: the loss of each ship, None if not lost; cargo: which one each grain is; drive: what moves the tank, in words;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
@@ -60,6 +62,7 @@ class Footage:
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.matters, self._series = recording.preset.matters, series
         self.water = Pool.of(recording.preset, recording.volume, recording.air_volume)
+        self.bulk = recording.bulk_volume if recording.bulk_volume.size else None
         self.basins = basins_of(recording.preset, recording.outline, recording.open_edges, recording.volume)
         self.cargo, self._preset = Stowage.of(recording.preset), recording.preset
         self.kinds = ["the rest", *recording.preset.kinds]

@@ -26,6 +26,7 @@ from lab.preset.sections import materials, shapes
 from lab.preset.sections.axle import Axle, check_axle
 from lab.preset.sections.bodies.checks import check_hold
 from lab.preset.sections.bodies.floating import WithBodies
+from lab.preset.sections.bulk.checks import Bulk, check_bulk
 from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_layers, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
@@ -91,6 +92,7 @@ class Preset(WithBodies):
     contact: Annotated[Contact, Of("grains"), Doc("The contact laws.")] = field(default_factory=Contact)
     water: Annotated[Water | None, Doc("The water in the tank.")] = None
     air: Annotated[Air | None, Of("water"), Doc("The air over the water, in a closed tank; nothing without it.")] = None
+    bulk: Annotated[Bulk | None, Doc("Loose cargo in the tank as a continuum, in place of grains.")] = None
     gauges: Annotated[dict[str, Gauge], Of("water"), Doc("Gauges of the water's pressure and level.")] = field(
         default_factory=dict
     )
@@ -245,6 +247,7 @@ def check(preset: Preset) -> None:
     check_tanks(preset)
     check_weight(preset)
     check_water(preset)
+    check_bulk(preset)
     check_wet(preset)
     check_air(preset)
     others = preset.ship is not None, bool(preset.motion.parts), bool(preset.matters)

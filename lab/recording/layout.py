@@ -13,6 +13,7 @@ from lab.base.trust import attribute_words
 from lab.preset.kept.content import MATTERS, Content, parted
 from lab.recording import older
 from lab.recording.outlines import GROUP as SHAPES
+from solvers.bulk import quantities as bulk
 from solvers.fluid import quantities as water
 from solvers.fluid.inflow import quantities as inflow
 from solvers.fluid.phases import quantities as air
@@ -46,13 +47,13 @@ STEERING = (
     Quantity("value", "", label="value that it was set to, SI", per="run"),
 )
 DTYPES = {"name": "S32"}  # of the quantities for which the default of `dtype_of` does not apply
-PARTICLES = "grain", "water_particle", "air_particle"
+PARTICLES = "grain", "water_particle", "air_particle", "point"
 CHECKS = "checks"  # the group of the checksums
 FLUSHED_ROWS = "rows"  # its attribute with the number of rows of the table at the last flush
 COLUMNS = "columns"  # its attribute with the names of the data sets, in the order of the checksums in a row
 
 # What each matter is recorded by
-OF_MATTERS = {"grains": grains, "water": water, "air": air}
+OF_MATTERS = {"grains": grains, "water": water, "air": air, "bulk": bulk}
 TABLES = "series", "frames", "steering"
 PARTS = "tank/parts"
 GROUPS = ("preset", *OF_MATTERS, "tank", SHAPES, *TABLES, CHECKS)  # all that is read of a file, and checked before
@@ -127,13 +128,17 @@ def names_of(preset: "Preset | Content", parts: Iterable[str] = ()) -> dict[str,
 
 
 def sizes_of(
-    names: Mapping[str, Sequence[str]], radius: np.ndarray, volume: np.ndarray | None, air: np.ndarray | None = None
+    names: Mapping[str, Sequence[str]],
+    radius: np.ndarray,
+    volume: np.ndarray | None,
+    air: np.ndarray | None = None,
+    bulk: np.ndarray | None = None,
 ) -> dict[str, int]:
-    """How many worlds, grains, particles of water and air, parts and gauges there are, by the owners of quantities."""
+    """How many worlds, grains, particles of water and air, points, parts and gauges there are, by owners."""
     worlds, count = radius.shape
-    water, gas = (0 if volumes is None else volumes.shape[1] for volumes in (volume, air))
+    water, gas, points = (0 if volumes is None else volumes.shape[1] for volumes in (volume, air, bulk))
     named = {owner: len(those) for owner, those in names.items()}
-    return {"world": worlds, "grain": count, "water_particle": water, "air_particle": gas, **named}
+    return {"world": worlds, "grain": count, "water_particle": water, "air_particle": gas, "point": points, **named}
 
 
 def dtype_of(quantity: Quantity) -> str:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from lab.recording.contacts.table import Contacts
 
 # Arbitrary but distinct sizes, to compare shapes
-SIZES = dict(zip(OWNERS, (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41), strict=True))
+SIZES = dict(zip(OWNERS, (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43), strict=True))
 TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 
 
@@ -84,7 +84,7 @@ class Recording:
             self._resolved = json.loads(self._stored("preset/resolved", text))
             self.content = content(self._resolved)
             self.radius, self.kind = self._grains()
-            self.volume, self.air_volume = self._volumes("water"), self._volumes("air")
+            self.volume, self.air_volume, self.bulk_volume = map(self._volumes, ("water", "air", "bulk"))
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
             self.parts = {name: self._stored(f"{PARTS}/{name}") for name in self._file[PARTS]}
@@ -120,14 +120,14 @@ class Recording:
         return np.zeros(none), np.zeros(none, dtype=np.uint8)
 
     def _volumes(self, phase: str) -> np.ndarray:
-        """Volumes (W, n), m², of the particles of water or air; n is 0 without it."""
+        """Volumes (W, n), m², of the particles of water or air, or the points of bulk; n is 0 without it."""
         if phase in self.content.matters:
             return self._stored(f"{phase}/volume")
         return np.zeros((len(self.radius), 0))
 
     def _tables(self) -> dict[str, Frames]:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
-        sizes = sizes_of(self.names, self.radius, self.volume, self.air_volume)
+        sizes = sizes_of(self.names, self.radius, self.volume, self.air_volume, self.bulk_volume)
         wanted = tables_of(self.content, "steering" in self._file)
         found = {}
         for name, known in wanted.items():
@@ -152,7 +152,9 @@ class Recording:
             "grains/radius": finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
             "water/volume": finite(self.volume, 2) and (self.volume.size > 0) == wet and (self.volume > 0.0).all(),
             "air/volume": finite(self.air_volume, 2) and (self.air_volume > 0.0).all(),
-            "the number of worlds": len(self.volume) == len(self.air_volume) == len(self.radius),
+            "bulk/volume": finite(self.bulk_volume, 2) and (self.bulk_volume > 0.0).all(),
+            "the number of worlds": len({len(v) for v in (self.radius, self.volume, self.air_volume, self.bulk_volume)})
+            < 2,
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
             "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,
             "tank/outline": finite(self.outline, 2, columns=2) and len(self.outline) > 2 and wide(self.outline),

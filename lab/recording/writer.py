@@ -56,6 +56,7 @@ def new_recording(
     step: float,
     volume: np.ndarray | None = None,
     air: np.ndarray | None = None,
+    bulk: np.ndarray | None = None,
     kind: np.ndarray | None = None,
     fixed: np.ndarray = (),
     open_edges: Sequence[int] = (),
@@ -67,10 +68,10 @@ def new_recording(
     """Create the recording of a run, without rows yet; returns its file.
 
     folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: the preset
-    itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s; volume, air (W, n) m²: of
-    the particles of water and air, None without; kind (W, n): numbers of the kinds of grains, 0 for the preset's
-    material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains; open_edges: outline edges without a
-    wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None if all
+    itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s; volume, air, bulk (W, n)
+    m²: of particles of water and air and of points, None without; kind (W, n): numbers of the kinds of grains, 0 for
+    the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains; open_edges: those with
+    no wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None if all
     are discs; machine: device and threads, added to the data found here; steered: whether the user steers the run.
 
     The file gets its name only when it is complete, so it is readable from then on. Raises LabError if the folder
@@ -103,7 +104,7 @@ def new_recording(
                 store(file, "grains/radius", radius)
                 kind = np.zeros(radius.shape) if kind is None else kind
                 store(file, "grains/kind", np.asarray(kind, dtype="u1"))
-            for phase, of_phase in {"water": volume, "air": air}.items():
+            for phase, of_phase in {"water": volume, "air": air, "bulk": bulk}.items():
                 if of_phase is not None and of_phase.size:
                     store(file, f"{phase}/volume", np.asarray(of_phase, dtype=float))
             store(file, "tank/outline", np.asarray(outline, dtype=float))
@@ -114,7 +115,7 @@ def new_recording(
                 store(file, f"{PARTS}/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
-            create_tables(file, tables_of(resolved, steered), names_of(resolved, parts), radius, volume, air)
+            create_tables(file, tables_of(resolved, steered), names_of(resolved, parts), radius, volume, air, bulk)
     return path
 
 

@@ -14,9 +14,11 @@ from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
-from lab.report import coarse, free, grains, water
+from lab.report import free, water
+from lab.report.cargo import bulk, coarse, grains
 from lab.report.ship import describe
 from lab.report.wet import bed
+from solvers.bulk.given import Bulk
 from solvers.fluid.timestep import steps_of_water
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.motion.frame import is_turn
@@ -52,8 +54,6 @@ SCHEDULES = {
     "per-band": "per band: each world cut into bands of grains, a core a band, in step",
     "per-grain": "per grain: all grains in parallel, a launch a step",
 }
-
-
 KEYS_WIDTH = 34  # characters of a key and its value, before its sentence
 
 Sections = list[tuple[str, list[tuple[str, str]]]]
@@ -90,6 +90,7 @@ def sections(loaded: LoadedPreset) -> Sections:
     found = [
         ("Scene", _scene(preset, scene)),
         ("Wet bed", bed.described(preset, scene)),
+        ("Bulk", bulk.described(preset, scene)),
         ("Ship", _ship(preset, simulation)),
         ("Coarse grains", coarse.described(preset) if preset.grains else []),
         ("Axle", free.described(preset) if preset.axle else []),
@@ -273,6 +274,7 @@ def _stepping(duration: float, preset, scene) -> float:
         )
     if scene.fluid:
         a_step += scene.fluid.moved / scene.fluid.substeps / DROP_STEPS_PER_CORE
+    a_step += scene.of(Bulk).count / bulk.POINT_STEPS_PER_CORE if scene.of(Bulk) else 0.0
     return rounds * _steps(scene, duration) * a_step
 
 

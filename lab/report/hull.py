@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.offsets import is_plain, read_offsets, rows_of, text_of
+from lab.assembly.lines.offsets import is_plain, read_offsets, rows_of, text_of
 from lab.base.errors import LabError
 from lab.base.files import write_text
 from lab.measures.naval_levers import draw_levers

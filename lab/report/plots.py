@@ -79,6 +79,7 @@ class Sheet:
         self._columns = 2
         count = f"{recording.radius.shape[1]} grains" if recording.preset.grains else "an empty tank"
         count = f"{recording.volume.shape[1]} particles of water" if recording.preset.water else count
+        count = f"bulk of {recording.bulk_volume.shape[1]} points" if recording.preset.bulk else count
         if recording.worlds > 1:
             count = f"{recording.worlds} beds of {count}; bands: ± std over beds, unless the legend says otherwise"
         title = f"{textwrap.fill(heading(recording.preset.title), TITLE)}\n{count}"

@@ -161,32 +161,36 @@ def verdict_of(beds: Sequence[Criterion]) -> str:
 def grounds_of(recording: Recording) -> str:
     """What a verdict of a run rests on: beds, grains and what they stand for, time."""
     preset, count = recording.preset, recording.radius.shape[1]
+    time = show(float(recording.series["time"][-1]), "s")
+    if preset.bulk:
+        return f"bulk of {recording.bulk_volume.shape[1]} points, a continuum; {time}"
     beds = "1 bed" if recording.worlds == 1 else f"{recording.worlds} beds"
     size, real = preset.mean_diameter, preset.grains.stands_for
     coarse = f", {size / real:.3g} times as large as the real ones" if real else ""
     across = f"{preset.tank.extent[0] / size:.0f} across the hold"
-    return f"{beds} of {count} grains, {across}{coarse}; {show(float(recording.series['time'][-1]), 's')}"
+    return f"{beds} of {count} grains, {across}{coarse}; {time}"
 
 
 def _cautions(recording: Recording, ship: Condition, rows: list[sheet.Row]) -> Iterator[str]:
     """What a reader must know of a sheet that rests on a run, a sentence each."""
-    if recording.worlds == 1 and any(row.told for row in rows):
+    if recording.worlds == 1 and recording.preset.grains and any(row.told for row in rows):
         yield (
             "One bed cannot tell whether she passes with the cargo as it lay, since it does not say how far beds "
             "differ: run several (run.repeats), and again with grains of half the size."
         )
+    key = "bulk.density" if recording.preset.bulk else "material.density or the number of grains"
     stated = ship.cargo.volume / ship.stowage
     if abs(ship.cargo.mass / stated - 1.0) > SAME_MASS:
         yield (
             f"Two masses of grain: the assumed shift is that of {stated:.5g} t, {ship.cargo.volume:.5g} m3 at the "
             f"stated {ship.stowage:.3f} m3/t, and in the run {ship.cargo.mass:.5g} t shifted, as the bed of model "
-            "grains weighs; change material.density or the number of grains until both agree."
+            f"grains weighs; change {key} until both agree."
         )
 
 
 def _trimming(recording: Recording, found: Condition) -> Iterator[sheet.Row]:
     """The IMSBC Code's criterion of a cargo that is no grain, as she was loaded and as it lay at the end."""
-    if not ship_unevenness.applies(recording):
+    if not (recording.preset.grains and ship_unevenness.applies(recording)):
         return
     measured = ship_unevenness.measure(recording)
     for shift, name in {"as loaded": "unevenness", "as it lay at the end": "final_unevenness"}.items():

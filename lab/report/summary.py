@@ -16,7 +16,8 @@ from lab.preset.fields import taken_of
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording, ship_end
-from lab.report import grains, ship, water
+from lab.report import ship, water
+from lab.report.cargo import bulk, grains
 from lab.report.numbers import RULE, count_of, number, own
 from solvers.motion import OF_TANK
 
@@ -49,6 +50,8 @@ TELLING = (
     "wave_mode",
     "top_altitude_end",
     "final_shift",
+    "bulk_half_range",
+    "bulk_shift",
     "first_slip_angle",
     "moment_amplitude",
     "contact_number",
@@ -59,13 +62,7 @@ TELLING = (
     "gauge_largest_",
     "force_peak_",
     "force_largest_",
-    "sloshing_frequency",
-    "crest_",
-    "run_up_",
-    "highest_water",
-    "gauge_impulse_",
-    "force_impulse_",
-    "water_residual",
+    *("sloshing_frequency", "crest_", "run_up_", "highest_water", "gauge_impulse_", "force_impulse_", "water_residual"),
     *("gauge_mean_", "gauge_std_", "trough_"),
     *("gauge_peak_scatter_", "force_peak_scatter_", "crest_scatter_", "trough_scatter_"),
 )
@@ -166,7 +163,7 @@ def _page(
     yield from (_row(name, value) for name, value in values.items())
     unit = " d is the mean grain diameter." * bool(preset.grains)
     yield f"\n{RULE}{unit} `lab/measures` defines each measure."
-    if preset.ship and preset.grains:
+    if preset.ship and (preset.grains or preset.bulk):
         yield from ship.criteria(recording)
     yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(machine_of(recording))}."
     yield f"\n{in_words(costs)}." if costs else ""
@@ -216,6 +213,8 @@ def _scene(recording: Recording) -> Iterator[str]:
         yield from grains.in_tank(recording)
     if recording.preset.water:
         yield from water.in_tank(recording)
+    if recording.preset.bulk:
+        yield from bulk.in_tank(recording)
     if not recording.preset.matters:
         yield "nothing in the tank"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
@@ -262,6 +261,8 @@ def cautions(recording: Recording) -> Iterator[str]:
         yield from grains.cautions(recording)
     if recording.preset.water:
         yield from water.cautions(recording)
+    if recording.preset.bulk:
+        yield from bulk.cautions(recording)
 
 
 def _cost(recording: Recording) -> str:

@@ -15,8 +15,8 @@ import numpy as np
 
 from lab.assembly.drawn import classes
 from lab.assembly.grains import fixed_of, radii_of
-from lab.assembly.scene import build, largest_multiple
-from lab.assembly.water import air_volumes_of, particles, updates, volumes_of
+from lab.assembly.scene import build, largest_multiple, volumes
+from lab.assembly.water import particles, updates
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
@@ -91,8 +91,7 @@ class Run:
             radius=radii_of(scene),
             outline=scene.outline,
             step=scene.step,
-            volume=volumes_of(scene),
-            air=air_volumes_of(scene),
+            **volumes(scene),
             kind=scene.grains.kind if scene.grains else None,
             fixed=fixed_of(scene),
             open_edges=scene.open_edges,

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from lab.assembly.bulk import points_of
 from lab.assembly.grains import fixed_of, radii_of
 from lab.assembly.scene import build
 from lab.assembly.water import air_volumes_of, volumes_of
@@ -47,6 +48,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
     """Write the recording of the dry run."""
     radius, parts = radii_of(scene)[:, :GRAINS], {name: part.line for name, part in preset.parts.items()}
     volume, air = (of(scene)[:, :GRAINS] for of in (volumes_of, air_volumes_of))
+    bulk = points_of(scene)[:, :GRAINS] if preset.bulk else None
     new_recording(
         folder,
         preset=loaded.name,
@@ -57,11 +59,12 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
         step=scene.step,
         volume=volume,
         air=air,
+        bulk=bulk,
         fixed=fixed_of(scene),
         open_edges=scene.open_edges,
         parts=parts,
     )
-    rate, sizes = preset.record.series_rate, sizes_of(names_of(preset, parts), radius, volume, air)
+    rate, sizes = preset.record.series_rate, sizes_of(names_of(preset, parts), radius, volume, air, bulk)
     a_frame = max(1, round(rate / preset.record.picture_rate))
     tables = tables_of(preset, steered=False)
     series, frames = tables["series"], tables["frames"]

@@ -72,6 +72,8 @@ def steerable(loaded: LoadedPreset) -> LoadedPreset:
     if preset.tank.solid is not None:
         key = next(f"tank.{key}" for key in ("mesh", "turned", "along") if getattr(preset.tank, key))
         raise LabError(f"{key}: a scene in space cannot be steered yet; `cargolab run` films it.")
+    if preset.bulk is not None:
+        raise LabError("bulk: cannot be watched as it runs yet; `cargolab run` films it.")
     if preset.grains is not None and preset.grains.room is not None:
         raise LabError("grains.room: the tank of a hull with grains cannot be steered; `cargolab run` films it.")
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))

@@ -24,6 +24,7 @@ OWNERS = {
     "inlet": ("world", "inlet"),
     "water_particle": ("world", "water_particle"),
     "air_particle": ("world", "air_particle"),
+    "point": ("world", "point"),
     "gauge": ("world", "gauge"),
     "level": ("world", "level"),
     "edge": ("world", "edge"),

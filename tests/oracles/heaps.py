@@ -52,6 +52,7 @@ class MadeFootage:
         self.radius, self.kind = self.radius[None], np.zeros((1, len(self.radius)), dtype=int)
         self.kinds, self.shapes, self.shape_names = ["the rest"], None, ["disc"]
         self.cargo, self.matters, self.water, self.hold = Stowage(by_kind=("chickpeas",)), ("grains",), None, None
+        self.bulk = None
         self.fixed, self.parts, self.bodies, self.rooms, self.floating = np.zeros((0, 4)), {}, [], {}, ()
         self.sea, self.rail, self.ends, self.basins = None, None, [None], []
         self.drive, self.protrudes = "tilt at 3°/s", bool(self.open_edges)

@@ -55,7 +55,7 @@ class MadeFootage:
     def __post_init__(self) -> None:
         gauges = {f"P{k}": gauge for k, gauge in enumerate(self.gauges, start=1)}
         levels = {f"L{k}": level for k, level in enumerate(self.levels, start=1)}
-        self.water = Pool(np.full((1, 1), self.spacing**2), gauges, levels)
+        self.water, self.bulk = Pool(np.full((1, 1), self.spacing**2), gauges, levels), None
         self.basins = [Basin(self.outline, self.open_edges, slice(None))]
         self.matters, self.worlds, self.sea, self.ends = ("water",), 1, None, [None]
         self.rail, self.protrudes, self.drive = None, bool(self.open_edges), ""

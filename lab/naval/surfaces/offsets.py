@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.offsets import from_offsets, rows_of, text_of
+from lab.assembly.lines.offsets import from_offsets, rows_of, text_of
 from lab.base.errors import LabError
 from lab.base.files import write_text
 from lab.naval.surfaces.read import AGREE

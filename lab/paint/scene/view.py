@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image
 
 from lab.paint import decorations as deco
+from lab.paint.bulk.layer import BulkLayer
 from lab.paint.colours import Colouring, spread
 from lab.paint.footage import Bed
 from lab.paint.page.layout import TEXT, Box
@@ -72,9 +73,9 @@ class SceneView:
         self.marks: dict[int, Marks] = {}
         self.overlay = Overlay(setting.overlay, self.beds, rows, setting.theme)
 
-    def style(self, grains: Colouring | None, water: WaterLayer, hues: Sequence[tuple]) -> None:
+    def style(self, grains: Colouring | None, water: WaterLayer, bulk: BulkLayer, hues: Sequence[tuple]) -> None:
         """Say what the colours show; hues: of the beds."""
-        self._colouring, self._water = grains, water
+        self._colouring, self._water, self._bulk = grains, water, bulk
         for k, bed in enumerate(self.beds):
             if pool := bed.footage.water:
                 own = hues_of(pool, self._theme.series) if len(hues) == 1 else None
@@ -167,6 +168,7 @@ class SceneView:
         """Water and parts; returns what the grains of the bed need to be painted."""
         bed, row, found = self.beds[k], self._rows[k][frame], {}
         self._water.paint(picture, camera, bed, row, self._theme.hold)
+        self._bulk.paint(picture, camera, bed, row, self._theme.hold)
         if not bed.empty:
             place = bed.position(row)
             place = place if part else self._on_ground(k, place, self._pose[frame, k])

@@ -87,7 +87,7 @@ class SpaceView:
         for azimuth, *stance in np.unique(np.column_stack([self._azimuth, self._stance[:, k]]), axis=0):
             yield azimuth, np.concatenate([points, carried(points, np.array(stance))]) if self._moves else points
 
-    def style(self, grains: Colouring | None, water: object, hues: Sequence[tuple]) -> None:
+    def style(self, grains: Colouring | None, water: object, bulk: object, hues: Sequence[tuple]) -> None:
         """Say what the colours show."""
         self._colouring, self._water = grains, SpaceWater(self.beds, water.colouring)
         for k, bed in enumerate(self.beds):

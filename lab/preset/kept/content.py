@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
-MATTERS = ("grains", "water", "air")  # the keys of the matters that a tank may hold; air is water's second phase
+# The keys of the matters that a tank may hold; air is the second phase of water
+MATTERS = ("grains", "water", "air", "bulk")
 FIRST = "tank"  # the name of the first tank
 INSIDE = "inside"  # the name of the one room of a hull for which none is drawn
 KINDS_OF_GAUGES = "pressure", "level", "force"

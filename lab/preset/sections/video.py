@@ -23,13 +23,21 @@ OF_GRAINS = (
 OF_WATER = ("water", "pressure", "speed", "vorticity", "particles", "excess-pressure")  # what `lab.paint.water` paints
 OF_WET = ("porosity",)  # of water between grains
 OF_AIR = ("air",)  # the air's pressure, and water as it is
+OF_BULK = ("sliding", "speed", "pressure", "strain")  # what `lab.paint.bulk` paints
 CARGOES = (  # whose looks are in `lab.paint.cargo`
     *("wheat", "rice", "corn", "sunflower", "beans", "soybeans", "chickpeas", "sand"),
     *("acetate", "coal", "iron-ore", "copper-ore", "gold-ore", "aluminium", "stone"),
 )
-COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR, *OF_WET)
+COLOURS = (
+    *OF_GRAINS,
+    *(colour for colour in OF_WATER if colour not in OF_GRAINS),
+    *OF_AIR,
+    *OF_WET,
+    "sliding",
+    "strain",
+)
 PLANE_ALONE = "vorticity", "excess-pressure"
-OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR}
+OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR, "bulk": OF_BULK}
 
 OF_SPACE = "azimuth", "elevation", "orbit", "cut", "slice"  # keys of scenes in space
 

@@ -11,7 +11,7 @@ import pytest
 
 from lab.assembly.hull_flow import Flow
 from lab.assembly.hull_tables import PANEL, whole_form, whole_table
-from lab.assembly.offsets import read_offsets
+from lab.assembly.lines.offsets import read_offsets
 from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.find import load

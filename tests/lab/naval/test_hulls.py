@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lab.assembly.offsets import from_offsets, read_offsets
+from lab.assembly.lines.offsets import from_offsets, read_offsets
 from lab.cli.naval import hull
 from lab.naval.surfaces.read import read_surface
 from lab.naval.weights import read_weights

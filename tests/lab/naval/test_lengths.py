@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from lab.assembly.offsets import read_offsets
+from lab.assembly.lines.offsets import read_offsets
 from lab.cli.naval import hull
 from lab.naval.lengths import between
 from lab.naval.loaded import Loaded, Wind

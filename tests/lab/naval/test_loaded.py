@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lab.assembly.offsets import from_offsets, read_offsets
+from lab.assembly.lines.offsets import from_offsets, read_offsets
 from lab.assembly.scene import vessels
 from lab.cli.naval import hull
 from lab.naval import sheet

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.assembly.offsets import COLUMNS, from_offsets, read_offsets, rows_of
+from lab.assembly.lines.offsets import COLUMNS, from_offsets, read_offsets, rows_of
 from lab.naval.weights import read_weights
 from lab.preset.tables import read_table
 from lab.report.hull import Asked, examine

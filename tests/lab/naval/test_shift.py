@@ -13,7 +13,8 @@ from lab.naval import sheet
 from lab.preset.find import load
 from lab.preset.recorded import to_table
 from lab.recording import open_recording
-from lab.report import coarse, file, plots, ship
+from lab.report import file, plots, ship
+from lab.report.cargo import coarse
 from solvers.ship.cargo import filling_centre
 from solvers.ship.hydrostatics import Loading, equilibrium
 from solvers.ship.naval.criteria import Criterion

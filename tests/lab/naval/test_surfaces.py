@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lab.assembly.offsets import read_offsets
+from lab.assembly.lines.offsets import read_offsets
 from lab.cli.naval import hull
 from lab.naval import loaded
 from lab.naval.loaded import Loaded, Wind

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lab.assembly.offsets import read_offsets
+from lab.assembly.lines.offsets import read_offsets
 from lab.base.errors import LabError
 from lab.naval.points import read_points
 from lab.naval.weights import read_weights

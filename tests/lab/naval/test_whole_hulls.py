@@ -6,7 +6,7 @@ import sys
 import pytest
 from click.testing import CliRunner
 
-from lab.assembly.offsets import read_offsets
+from lab.assembly.lines.offsets import read_offsets
 from lab.cli.naval import hydrodynamics, lewis
 from lab.naval.lewis import write_lewis
 from solvers.ship.water import Water

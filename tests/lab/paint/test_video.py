@@ -9,6 +9,7 @@ import pytest
 import scipy.ndimage
 
 from lab.base.errors import LabError
+from lab.paint.bulk.colours import FIELDS as BULK_FIELDS
 from lab.paint.colours import MODES
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import Bed, open_footage
@@ -204,7 +205,9 @@ def test_spin_is_coloured_in_turns_a_second(tmp_path):
 
 def test_a_preset_may_name_every_colour_and_no_other():
     water = [name for name in ("water", *FIELDS) if name not in MODES]
-    assert taken_of(Video)["colour"].words == (*MODES, *water, *OF_AIR, *OF_WET)
+    bulk = [name for name in BULK_FIELDS if name not in (*MODES, *water)]
+    assert taken_of(Video)["colour"].words == (*MODES, *water, *OF_AIR, *OF_WET, *bulk)
+    assert colours_of(("bulk",)) == tuple(BULK_FIELDS)
     assert colours_of(("grains",)) == tuple(MODES)
     assert colours_of(("water",)) == ("water", *FIELDS)
     assert colours_of(("grains", "water"))[-1:] == OF_WET and set(WET_FIELDS) == set(OF_WET)

@@ -68,7 +68,7 @@ def test_every_preset_of_the_lab_resolves_and_has_a_title_and_source(name):
     assert said.title.strip() and said.source.strip() and said.reports.strip()
     moving = [motion.fastest(said.motion.soft_start) for motion in said.motion.parts.values()]
     moving += [part.fastest() for part in said.parts.values()]
-    of_itself = said.ship or said.axle or said.bodies or said.openings
+    of_itself = said.ship or said.axle or said.bodies or said.openings or (said.bulk and said.bulk.region)
     assert (any(moving) or of_itself or said.water.region or said.water.flow) and said.duration > 0
 
 
@@ -115,6 +115,8 @@ def test_a_quick_variant_states_its_differences_and_differs_only_in_cost(name, m
         alike["grains"] = replace(quick.grains, **of_size)
         sized = {name: replace(kind, diameter=whole.kinds[name].diameter) for name, kind in quick.kinds.items()}
         alike["kinds"] = sized
+    if quick.bulk:
+        alike["bulk"] = replace(quick.bulk, spacing=whole.bulk.spacing, stiffness=whole.bulk.stiffness)
     if quick.water:
         alike["water"] = replace(quick.water, spacing=whole.water.spacing)
     assert replace(quick, **alike) == whole
@@ -256,12 +258,12 @@ def test_invalid_outlines_are_refused(corners, words):
     ("overrides", "sentence"),
     [
         ({"grains.diamter": "3 mm"}, "grains.diamter: unknown key; did you mean 'diameter'?"),
-        ({"diameter": "3 mm"}, "diameter: unknown key; did you mean 'grains.diameter'?"),
+        ({"diameter": "3 mm"}, "diameter: unknown key; did you mean 'grains.diameter' or 'bulk.diameter'?"),
         ({"motion.rol.amplitude": 1}, "motion.rol: unknown key; did you mean 'roll'?"),
         ({"wall.density": 1}, "wall.density: unknown key; did you mean 'material.density'?"),
         ({"repeats": 12}, "repeats: unknown key; did you mean 'run.repeats'?"),
         ({"fricton": 0.3}, "fricton: unknown key; did you mean 'material.friction'?"),
-        ({"spacing": "5 mm"}, "spacing: unknown key; did you mean 'water.spacing'?"),
+        ({"spacing": "5 mm"}, "spacing: unknown key; did you mean 'water.spacing' or 'bulk.spacing'?"),
         ({"grain.diameter": "5 mm"}, "grain: unknown key; did you mean 'grains'?"),
         (
             {"motion.tilt.rate": "3 mm"},

@@ -236,6 +236,7 @@ def whole(tmp_path_factory) -> Path:
         radius=np.full((1, 3), 1e-3),
         volume=volume,
         air=volume,
+        bulk=volume,
         parts={"gate": np.array([(0.0, 0.0), (0.0, 0.2)])},
         shapes=Outlines((contour,), np.zeros(1), np.zeros((1, 3))),
         outline=np.array([(-0.5, 0.0), (0.5, 0.0), (0.5, 0.5), (-0.5, 0.5)]),

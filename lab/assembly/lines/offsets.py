@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.fairing import fair
-from lab.assembly.offset_tables import offsets_of
+from lab.assembly.lines.fairing import fair
+from lab.assembly.lines.offset_tables import offsets_of
 from lab.base.errors import LabError
 from lab.preset.tables import read_table
 from solvers.machine.errors import Unavailable

@@ -1,0 +1,1 @@
+"""Pictures of bulk: loose cargo as a continuum."""

@@ -1,0 +1,1 @@
+"""Bulk, loose cargo as a continuum, in a preset."""

@@ -1,0 +1,1 @@
+"""What `explain` and a summary say of loose cargo: grains, coarse ones, and bulk."""

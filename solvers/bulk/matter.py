@@ -1,0 +1,141 @@
+"""Bulk as a matter: what a step asks of it, and what a simulation does."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.bulk.checks import check_bulk, refuse_speed
+from solvers.bulk.diagnostics import Diagnostics
+from solvers.bulk.gather import Gather
+from solvers.bulk.given import Bulk
+from solvers.bulk.nodes import Nodes
+from solvers.bulk.order import Order
+from solvers.bulk.spread import Spread
+from solvers.bulk.start import sideways
+from solvers.bulk.state import Points
+from solvers.machine.errors import Unavailable
+from solvers.machine.phase import Phase
+from solvers.ship.body import Body, frozen
+from solvers.tank.context import Context
+from solvers.tank.matter import Matter
+
+AT_REST = 1e-6  # of m g h, what the restlessness counts in
+
+
+@ti.data_oriented
+class BulkMatter(Matter):
+    """Bulk: points are listed by columns and spread to nodes, nodes move in their walls, and points follow them.
+
+    The scheme is symplectic: stresses of the beginning of a step change velocities, which change places and stresses.
+    """
+
+    name = "bulk"
+
+    def __init__(self, scene, context: Context):
+        bulk: Bulk = scene.of(Bulk)
+        arrays, carrier = context.arrays, context.carrier
+        self.scene, self.bulk, self.thickness = scene, bulk, scene.tanks[0].thickness
+        self.units = units = context.units(bulk.grid.columns)
+        self.load = context.load(arrays.under("bulk"), units)
+        self.points = Points(arrays, bulk)
+        order = Order(arrays, self.points, bulk)
+        self.spread = Spread(arrays, units, self.points, order, bulk)
+        self.nodes = Nodes(arrays, units, self.spread, order, bulk, self.load, carrier, self.thickness)
+        self.gather = Gather(arrays, units, self.points, order, self.spread, self.nodes, bulk)
+        self.diagnostics = Diagnostics(arrays, self.gather, carrier, bulk.material.bulk_modulus)
+        if carrier.responds:
+            self.load.lag(self._held_mass(scene), relaxed=False)
+        self.before = (Phase(order.sort), Phase(self.spread.spread, units), Phase(self.nodes.react, units))
+        moving = [self.nodes.kick] if carrier.responds else []
+        self.after = tuple(Phase(act, units) for act in (*moving, self.gather.move))
+
+    def _held_mass(self, scene) -> np.ndarray:
+        """The added mass (W, 3, 3), per metre of a ship, of what walls hold at once: all within a cell of them."""
+        points, grid = self.bulk.points, self.bulk.grid
+        near = points["position"][0]
+        node = np.round((near - grid.origin[0]) / grid.spacing[0]).astype(int)
+        node = np.clip(node, 0, [grid.columns - 1, grid.rows - 1])
+        held = np.abs(grid.walls).max(axis=(-1, -2))[tuple(node.T)] > 0.0
+        mass, (y, z) = points["mass"][0] * held, near.T
+        total, of_y, of_z = mass.sum(), mass @ y, mass @ z
+        matrix = [[total, 0.0, -of_z], [0.0, total, of_y], [-of_z, of_y, mass @ (y * y + z * z)]]
+        shares = [self.thickness * scene.tanks[0].share(vessel.length) for vessel in scene.vessels]
+        return np.array([share * np.array(matrix) for share in shares])
+
+    @property
+    def extent(self) -> float:
+        """How far (m) from the tank's origin a point may be."""
+        return self.scene.span
+
+    @ti.func
+    def speed(self, u):
+        """The highest speed (m/s) of a unit."""
+        return self.gather.fastest[u]
+
+    @ti.func
+    def is_sound(self, u, speed, dt):
+        """Whether a unit's speed is one that the bulk bears."""
+        return speed < self.gather.numbers[4]
+
+    def observe(self, time: float) -> dict[str, np.ndarray]:
+        """The quantities of every world at its time (s): (W, *shape) of each by name."""
+        return self.diagnostics.sums_at(time)
+
+    def check(self, rows: dict[str, np.ndarray], time: float) -> None:
+        """Raise BadState if the quantities at `time` (s) show an unphysical state."""
+        check_bulk(rows, time)
+
+    def refuse(self, world: int, time: float, dt: float) -> None:
+        """Raise BadState for a world that was stopped at `time` (s) since its bulk is too fast."""
+        own = slice(world * self.units.a_world, (world + 1) * self.units.a_world)
+        fastest, sound = self.gather.fastest.to_numpy()[own].max(), self.bulk.material.sound_speed
+        refuse_speed(world, float(fastest), sound, time)
+
+    def restlessness(self, rows: dict[str, np.ndarray]) -> np.ndarray:
+        """Kinetic energy in units of m g h, of cells h high and a millionth, (W,)."""
+        scale = self.thickness * self.bulk.mass * self.scene.gravity * self.bulk.grid.smallest
+        return rows["kinetic"] / (AT_REST * scale) if scale > 0.0 else np.zeros(len(rows["kinetic"]))
+
+    def place(self, position: np.ndarray | None) -> None:
+        """Place the points as the scene says, at rest."""
+        material = self.bulk.material
+        self.points.put(self.bulk.points, sideways(material.friction), material.bulk_modulus)
+        self.load.forget()
+        self.nodes.lost.fill(0.0)
+        self.gather.lost.fill(0.0)
+
+    def bear(self, scene) -> None:
+        """Raise Unavailable: its material is compiled into no array that could be changed."""
+        if scene.of(Bulk).material != self.bulk.material:
+            raise Unavailable("bulk: start the experiment anew for another material")
+
+    def snapshot(self, time: float) -> dict[str, np.ndarray]:
+        """Places, velocities, pressures, mobilised friction and plastic strain (W, n) of the points now."""
+        p = self.points
+        y, z, v_y, v_z, volume, free, use, strain = p.read(*p.place, *p.velocity, p.volume, p.free, p.use, p.strain)
+        pressure = np.maximum(0.0, self.bulk.material.bulk_modulus * (free / volume - 1.0))
+        return {
+            "bulk_position": np.stack([y, z], axis=-1),
+            "bulk_velocity": np.stack([v_y, v_z], axis=-1),
+            "bulk_pressure": pressure,
+            "bulk_friction": use,
+            "bulk_strain": strain,
+        }
+
+    def fields(self) -> list[ti.Field]:
+        """The arrays that a step changes."""
+        return [*self.points.fields(), self.nodes.lost, self.gather.lost, *self.load.impulse]
+
+    def as_rigid(self) -> list[Body]:
+        """The bulk of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
+        p = self.points
+        y, z, mass, volume = p.read(*p.place, p.mass, p.volume)
+        shares = np.array(
+            [[self.thickness * tank.share(vessel.length) for tank in self.scene.tanks] for vessel in self.scene.vessels]
+        )
+        factor = np.repeat(shares, self.bulk.fill, axis=1)
+        return [frozen(*one) for one in zip(y, z, factor * mass, volume, strict=True)]
+
+
+def make_bulk(scene, context: Context) -> BulkMatter | None:
+    """The bulk of a scene (`solvers.scene.Scene`)."""
+    return BulkMatter(scene, context)
