@@ -27,6 +27,9 @@ class Gather:
     Where the grid knows more density than the point's own volume says, by more than a BAND, the volume follows at the
     rate EVENED, and where it knows less, too, if the point is DEEP: the grid is half empty at the surface. The sum of
     many small errors of the velocity gradient would else be room that is lost, or won.
+
+    A bed that `softens` holds μ_s + (μ_start − μ_s) exp(−γ/γ_s) after the plastic shear strain γ: grains must first
+    ride up on each other. It does not heal at rest (an exponential law of strain softening; ours).
     """
 
     def __init__(
@@ -35,6 +38,7 @@ class Gather:
         self.units, self.points, self.order, self.spread, self.nodes = units, points, order, spread, nodes
         self.rows, self.exact, self.law = bulk.grid.rows, arrays.exact, LAWS[bulk.material.law]()
         m = bulk.material
+        self.softens = m.softens
         own = arrays.under("bulk.gather")
         numbers = [
             m.shear_modulus,
@@ -44,6 +48,8 @@ class Gather:
             FASTEST * m.sound_speed,
             nodes.thickness,
             m.density * DEEP * bulk.grid.smallest,
+            m.start_friction - m.friction,
+            m.softening,
         ]
         self.numbers = own.holding("numbers", np.array(numbers), "number")
         (self.fastest,) = own.reals((units.axis,), "fastest", kept=False)
@@ -109,6 +115,8 @@ class Gather:
         p = self.points
         yy, yz, zy, zz = p.gradient[0][w, i], p.gradient[1][w, i], p.gradient[2][w, i], p.gradient[3][w, i]
         zero, shear, friction = ti.cast(0.0, p.real), self.numbers[0], self.numbers[1]
+        if ti.static(self.softens):
+            friction += self.numbers[7] * ti.exp(-p.strain[w, i] / self.numbers[8])
         opening = yy + zz
         third, spin = opening / 3.0, 0.5 * (yz - zy)
         volume = p.volume[w, i] * (1.0 + dt * opening)

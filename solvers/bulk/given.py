@@ -22,7 +22,8 @@ class Granular:
     """A granular material as a continuum, in SI units.
 
     `density` of the bed at rest (kg/m³), of grains packed by the share `packing`; `friction` μ_s, `fast_friction` μ_2
-    and `inertial_number` I_0 of μ(I), for grains of a `diameter` (m); `wall_friction`; `young`'s modulus (Pa).
+    and `inertial_number` I_0 of μ(I), for grains of a `diameter` (m); `wall_friction`; `young`'s modulus (Pa). A bed
+    that has not been sheared yet holds `start_friction`, and forgets it over the plastic shear strain `softening`.
     """
 
     density: float
@@ -34,6 +35,13 @@ class Granular:
     inertial_number: float = 0.28
     diameter: float = 0.0
     packing: float = 0.6
+    start_friction: float = 0.0
+    softening: float = 0.2
+
+    @property
+    def softens(self) -> bool:
+        """Whether it holds more before it is sheared."""
+        return self.start_friction > self.friction
 
     @property
     def bulk_modulus(self) -> float:

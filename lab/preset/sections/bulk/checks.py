@@ -73,6 +73,11 @@ def _check_friction(bulk: Bulk) -> None:
             f"bulk.wall_friction: {bulk.wall_friction:.3g} is more than the bed's own {bulk.slow_friction:.3g}, so "
             "it would slide within itself first; lower it, or set bulk.rough = true."
         )
+    if bulk.start_friction is not None and bulk.start_friction < bulk.slow_friction:
+        raise LabError(
+            f"bulk.start_friction: is less than the {bulk.slow_friction:.3g} of a bed that slides; raise it, or leave "
+            "this out."
+        )
     if bulk.fast_friction is not None and bulk.fast_friction < bulk.slow_friction:
         raise LabError(
             f"bulk.fast_friction: is less than the {bulk.slow_friction:.3g} of slow flow; raise it, or set "

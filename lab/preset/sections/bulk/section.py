@@ -15,6 +15,7 @@ from solvers.tank.outline import cut_off
 
 FASTER = 0.261  # μ_2 − μ_s of glass beads (Jop, Forterre & Pouliquen 2006)
 INERTIAL = 0.279  # I_0 of these
+SOFTENING = 0.2  # strain from a settled bed to steady flow, in shear tests a tenth to a third
 ROUGH = 10.0  # friction of a wall along which nothing slides
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
@@ -48,6 +49,13 @@ class Bulk:
         Doc("Angle of repose; or give `friction`, its tangent."),
     ] = None
     friction: Annotated[Friction | None, Usual(0.2, 1.0, "1"), Doc("Friction of the bed, in place of `repose`.")] = None
+    start_friction: Annotated[
+        Friction | None,
+        Doc("Friction of the bed before it has been sheared, more than `friction`; without it the same."),
+    ] = None
+    softening: Annotated[
+        float, Interval(gt=0, le=10), Doc("Plastic shear strain over which the difference of the two fades.")
+    ] = SOFTENING
     wall_friction: Annotated[
         Annotated[float, Interval(ge=0, le=2)] | None,
         Usual(0.0, 1.0, "1"),
@@ -106,4 +114,6 @@ class Bulk:
             inertial_number=self.inertial_number,
             diameter=self.diameter,
             packing=self.packing,
+            start_friction=self.start_friction or 0.0,
+            softening=self.softening,
         )
