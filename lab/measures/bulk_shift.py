@@ -19,7 +19,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band
+from lab.measures.drawing import BLUE, GREEN, GREY, PURPLE, VERMILION, Sheet, band
 from lab.measures.driven_load import between
 from lab.measures.loose import loose_mass
 from lab.measures.motion import driving
@@ -104,6 +104,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     for k, (colour, name) in enumerate(names):
         band(lower, time, 100.0 * losses[..., k] / own, colour, name)
     band(lower, time, 100.0 * losses[..., 3] / own, GREY, "control of volume")
+    band(lower, time, 100.0 * losses[..., 4] / own, PURPLE, "by way of the grid")
     lower.set_ylabel("energy lost\n(% of weight × width)")
     lower.set_xlabel("time (s)")
     lower.set_xlim(time[0], time[-1])

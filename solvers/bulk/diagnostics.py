@@ -50,8 +50,7 @@ class Diagnostics:
             m = ti.cast(p.mass[w, i], self.exact)
             y, z = ti.cast(p.place[0][w, i], self.exact), ti.cast(p.place[1][w, i], self.exact)
             mass, of_y, of_z = mass + m, of_y + m * y, of_z + m * z
-            v_y, v_z = ti.cast(p.velocity[0][w, i], self.exact), ti.cast(p.velocity[1][w, i], self.exact)
-            kinetic += 0.5 * m * (v_y * v_y + v_z * v_z)
+            kinetic += ti.cast(self.order.kinetic(w, i), self.exact)
             volume, free = ti.cast(p.volume[w, i], self.exact), ti.cast(p.free[w, i], self.exact)
             if free > volume:
                 elastic += self.modulus * (free * ti.log(free / volume) - (free - volume))
@@ -72,12 +71,13 @@ class Diagnostics:
             thickness * mass * self.carrier.gravity[0] * self.height(w, time, of_y / mass, of_z / mass)
         )
         self.rows[w, self.at.elastic] = thickness * elastic
-        losses = ti.Vector([zero, zero, zero, zero])
+        losses = ti.Vector([zero, zero, zero, zero, zero])
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             losses[0] += self.nodes.lost[u]
+            losses[4] += thickness * self.gather.spread.taken[u]
             for way in ti.static(range(3)):
                 losses[1 + way] += self.gather.lost[u, way]
-        for way in ti.static(range(4)):
+        for way in ti.static(range(5)):
             self.rows[w, self.at.bulk_losses + way] = losses[way]
         self.rows[w, self.at.bulk_sliding] = sliding / mass
         self.rows[w, self.at.bulk_crowding] = crowding / mass

@@ -60,17 +60,20 @@ class Gather:
         """Move the points of a unit's columns; returns whether all of them are slow enough."""
         w = self.units.world(u)
         zero = ti.cast(0.0, self.points.real)
+        kinetic = ti.cast(0.0, self.exact)
         most, total, lost = zero, zero, ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for c in range(self.units.first(u), self.units.end(u)):
             for k in range(self.order.first[w, c], self.order.first[w, c + 1]):
                 i = self.order.listed[w, k]
                 over, square = self.follow(w, c, i, dt)
                 most, total = ti.max(most, square), total + square
+                kinetic += ti.cast(self.order.kinetic(w, i), self.exact)
                 spent = self.strain(w, i, over, kick, dt)
                 for way in ti.static(range(3)):
                     lost[way] += ti.cast(spent[way], self.exact)
         for way in ti.static(range(3)):
             self.lost[u, way] = self.lost[u, way] + ti.cast(self.numbers[5], self.exact) * lost[way]
+        self.spread.taken[u] = self.spread.taken[u] - kinetic
         self.fastest[u] = ti.sqrt(most)
         if not total < 1e30:  # the largest value may pass over what is no number, a sum does not
             self.fastest[u] = total

@@ -102,6 +102,7 @@ class BulkMatter(Matter):
         self.load.forget()
         self.nodes.lost.fill(0.0)
         self.gather.lost.fill(0.0)
+        self.spread.taken.fill(0.0)
 
     def bear(self, scene) -> None:
         """Raise Unavailable: its material is compiled into no array that could be changed."""
@@ -123,7 +124,7 @@ class BulkMatter(Matter):
 
     def fields(self) -> list[ti.Field]:
         """The arrays that a step changes."""
-        return [*self.points.fields(), self.nodes.lost, self.gather.lost, *self.load.impulse]
+        return [*self.points.fields(), self.nodes.lost, self.gather.lost, self.spread.taken, *self.load.impulse]
 
     def as_rigid(self) -> list[Body]:
         """The bulk of each world as one rigid body, per metre of the ship's length, in the tank's frame."""

@@ -6,7 +6,7 @@ import taichi as ti
 from solvers.bulk.given import Bulk
 from solvers.bulk.grid import FREE, MOST
 from solvers.bulk.order import Order
-from solvers.bulk.spread import ALONG, MASS, SLOTS, UP, WIDE, Spread
+from solvers.bulk.spread import ALONG, MASS, PUSHED_ALONG, PUSHED_UP, SLOTS, UP, WIDE, Spread
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.motion.frame import turned
@@ -61,11 +61,11 @@ class Nodes:
     @ti.func
     def sum_strips(self, w, c, row):
         """Mass and momentum of a node, from the strips of three columns of points in one order."""
-        total = ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(3))])
+        total = ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(SLOTS))])
         for k in ti.static(range(WIDE)):
             if c >= k:
                 slot = (((c - k) * WIDE + k) * self.rows + row) * SLOTS
-                for q in ti.static((MASS, ALONG, UP)):
+                for q in ti.static(range(SLOTS)):
                     total[q] += self.spread.strips[w, slot + q]
         return total
 
@@ -101,27 +101,30 @@ class Nodes:
         c = self.units.first(u)
         while c < self.units.end(u):  # those of one tank after the other
             tank, last = self.kept[c], self.units.end(u)
-            load, lost = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))]), ti.cast(0.0, self.exact)
+            load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
+            lost, gained = ti.cast(0.0, self.exact), ti.cast(0.0, self.exact)
             while c < last and self.kept[c] == tank:
                 for row in range(self.rows):
-                    push, taken = self.move_node(w, c, row, frame, kick)
+                    push, taken, gain = self.move_node(w, c, row, frame, kick)
                     for k in ti.static(range(3)):
                         load[k] += ti.cast(push[k], self.exact)
-                    lost += ti.cast(taken, self.exact)
+                    lost, gained = lost + ti.cast(taken, self.exact), gained + ti.cast(gain, self.exact)
                 c += 1
             if ti.static(books):
                 self.load.book(u, tank, (self.numbers[1] / kick) * load, dt)
             if ti.static(books != self.twice):
                 self.lost[u] = self.lost[u] + self.numbers[1] * lost
+                self.spread.taken[u] = self.spread.taken[u] + gained
 
     @ti.func
     def move_node(self, w, c, row, frame: ti.template(), kick):
-        """Velocity of a node after the step; returns its impulse on the walls and the moment, and what friction takes.
+        """Velocity of a node after the step; returns its impulse on the walls and the moment, the energy that
+        walls take (impulse times mean velocity), and its gain of kinetic energy.
 
         In the tank's frame (b, φ̇, φ̈) it feels b − φ̈ × r + φ̇² r − 2 φ̇ × u; the last turns the velocity (Cayley).
         """
         zero = ti.cast(0.0, self.real)
-        push, taken = ti.Vector([zero, zero, zero]), zero
+        push, taken, gain = ti.Vector([zero, zero, zero]), zero, zero
         total, slot = self.sum_strips(w, c, row), c * self.rows + row
         v_y, v_z = zero, zero
         if total[MASS] > 0.0:
@@ -131,7 +134,9 @@ class Nodes:
                 rate, rise = ti.cast(frame[2], self.real), ti.cast(frame[3], self.real)
                 b_y += rise * z + rate * rate * y
                 b_z += rate * rate * z - rise * y
-            u_y, u_z = total[ALONG] / total[MASS] + kick * b_y, total[UP] / total[MASS] + kick * b_z
+            old_y, old_z = total[ALONG] / total[MASS], total[UP] / total[MASS]
+            u_y = old_y + total[PUSHED_ALONG] / total[MASS] + kick * b_y
+            u_z = old_z + total[PUSHED_UP] / total[MASS] + kick * b_z
             v_y, v_z = u_y, u_z
             if ti.static(self.carrier.rotating):
                 half = kick * ti.cast(frame[2], self.real)
@@ -147,10 +152,11 @@ class Nodes:
                         v_y, v_z = v_y + into * n_y, v_z + into * n_z
                         fast = ti.sqrt(v_y * v_y + v_z * v_z)
                         slower = ti.max(0.0, 1.0 - self.numbers[0] * into / ti.max(fast, 1e-20))
-                        taken += total[MASS] * slower * (1.0 - slower) * fast * fast  # impulse times the speed after it
                         v_y, v_z = slower * v_y, slower * v_z
                 push_y, push_z = total[MASS] * (free_y - v_y), total[MASS] * (free_z - v_z)
                 push = ti.Vector([push_y, push_z, y * push_z - z * push_y])
+                taken = 0.5 * (push_y * (old_y + v_y) + push_z * (old_z + v_z))
+            gain = 0.5 * total[MASS] * (v_y * v_y + v_z * v_z - old_y * old_y - old_z * old_z)
         self.node[w, 4 * slot + V_Y], self.node[w, 4 * slot + V_Z] = v_y, v_z
         self.node[w, 4 * slot + HAS], self.node[w, 4 * slot + MAY] = total[MASS], self.share[slot]
-        return push, taken
+        return push, taken, gain

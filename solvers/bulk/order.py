@@ -49,6 +49,15 @@ class Order:
         return node, ti.cast(along - node, self.points.real)
 
     @ti.func
+    def kinetic(self, w, i):
+        """Kinetic energy (J/m) of a point and of the velocity about it."""
+        tank = self.of(i)
+        finer_y, finer_z = self.table[tank, 2], self.table[tank, 3]
+        quarter_y = ti.cast(0.25 / (finer_y * finer_y), self.points.real)
+        quarter_z = ti.cast(0.25 / (finer_z * finer_z), self.points.real)
+        return self.points.kinetic(w, i, quarter_y, quarter_z)
+
+    @ti.func
     def sort(self, w, t, kick, dt):
         """List a world's points by columns: a counting sort on one thread."""
         for c in range(self.columns + 1):

@@ -4,14 +4,16 @@ from solvers.machine.quantity import Quantity, directions
 
 SERIES = (
     Quantity("centre_of_mass", "m", directions, "centre of mass of the bulk in the tank"),
-    Quantity("kinetic", "J", label="kinetic energy of the bulk, relative to the tank"),
+    Quantity(
+        "kinetic", "J", label="kinetic energy of the bulk, that of velocity gradients included, relative to the tank"
+    ),
     Quantity("potential", "J", label="potential energy of the bulk above the earth's origin"),
     Quantity("elastic", "J", label="elastic energy of the bulk"),
     Quantity(
         "bulk_losses",
         "J",
-        ("walls", "yielding", "opening", "volume"),
-        "energy lost so far: to friction at walls, yielding, the end of contact, and the control of volume",
+        ("walls", "yielding", "opening", "volume", "grid"),
+        "energy lost so far: at walls, by yielding, by opening, to the control of volume, and by way of the grid",
     ),
     Quantity("bulk_sliding", "1", label="share of the bulk's mass that slides: its friction is called on in full"),
     Quantity("bulk_crowding", "1", label="mean density on the grid over that of the points, less one"),

@@ -10,9 +10,9 @@ from solvers.bulk.weights import weights
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 
-MASS, ALONG, UP = range(3)  # of what a node gathers
+MASS, ALONG, UP, PUSHED_ALONG, PUSHED_UP = range(5)  # of a node: mass, momentum, impulse of stresses
 WIDE = 3  # columns of nodes that a column of points spreads to
-SLOTS = 4  # numbers of a node, one of them unused
+SLOTS = 5  # numbers of a node
 
 
 @ti.data_oriented
@@ -25,9 +25,12 @@ class Spread:
 
     def __init__(self, arrays: State, units: Units, points: Points, order: Order, bulk: Bulk):
         self.units, self.points, self.order, self.rows = units, points, order, bulk.grid.rows
+        self.exact = arrays.exact
         own = arrays.under("bulk.spread")
         self.modulus = own.holding("modulus", np.array([bulk.material.bulk_modulus]), "one")
         length = bulk.grid.columns * WIDE * self.rows * SLOTS
+        # What the way from points to nodes and back has taken since the start, over the thickness (J/m)
+        (self.taken,) = own.reals((units.axis,), "taken", kind=own.exact)
         (self.strips,) = own.reals((Axis("world", points.worlds), Axis("slot", length)), "strips", kept=False)
 
     @ti.func
@@ -39,13 +42,15 @@ class Spread:
     @ti.func
     def spread(self, u, t, kick, dt):
         """Spread the points of a unit's columns to their strips."""
-        w = self.units.world(u)
+        w, kinetic = self.units.world(u), ti.cast(0.0, self.exact)
         for c in range(self.units.first(u), self.units.end(u)):
             begin = c * (WIDE * self.rows * SLOTS)
             for k in range(WIDE * self.rows * SLOTS):
                 self.strips[w, begin + k] = 0.0
             for k in range(self.order.first[w, c], self.order.first[w, c + 1]):
                 self.spread_point(w, self.order.listed[w, k], begin, kick)
+                kinetic += ti.cast(self.order.kinetic(w, self.order.listed[w, k]), self.exact)
+        self.taken[u] = self.taken[u] + kinetic
 
     @ti.func
     def spread_point(self, w, i, begin, kick):
@@ -58,13 +63,12 @@ class Spread:
         mass, pressure = p.mass[w, i], self.pressure(w, i)
         pushed = 4.0 * kick * p.volume[w, i]
         shear = pushed * p.deviator[SHEAR][w, i]
-        # Per cell instead of per metre: 1/h of what acts over 1/h², and C h
-        of_y = pushed * (p.deviator[ALONG_Y][w, i] - pressure) * finer[0]
-        of_z = pushed * (p.deviator[ALONG_Z][w, i] - pressure) * finer[1]
-        yy = mass * p.gradient[0][w, i] / finer[0] - of_y
-        yz = mass * p.gradient[1][w, i] / finer[1] - shear * finer[1]
-        zy = mass * p.gradient[2][w, i] / finer[0] - shear * finer[0]
-        zz = mass * p.gradient[3][w, i] / finer[1] - of_z
+        # Per cell instead of per metre: 4/h of what acts over 4/h², and C h
+        push_yy = pushed * (p.deviator[ALONG_Y][w, i] - pressure) * finer[0]
+        push_zz = pushed * (p.deviator[ALONG_Z][w, i] - pressure) * finer[1]
+        push_yz, push_zy = shear * finer[1], shear * finer[0]
+        yy, yz = mass * p.gradient[0][w, i] / finer[0], mass * p.gradient[1][w, i] / finer[1]
+        zy, zz = mass * p.gradient[2][w, i] / finer[0], mass * p.gradient[3][w, i] / finer[1]
         v_y, v_z = mass * p.velocity[0][w, i], mass * p.velocity[1][w, i]
         for a in ti.static(range(WIDE)):
             off_y = a - far_y
@@ -73,6 +77,13 @@ class Spread:
                 off_z = b - far_z
                 weight = along[a] * up[b]
                 slot = begin + (a * self.rows + row + b) * SLOTS
-                self.strips[w, slot + MASS] = self.strips[w, slot + MASS] + weight * mass
-                self.strips[w, slot + ALONG] = self.strips[w, slot + ALONG] + weight * (first_y + yz * off_z)
-                self.strips[w, slot + UP] = self.strips[w, slot + UP] + weight * (first_z + zz * off_z)
+                self.add(w, slot + MASS, weight * mass)
+                self.add(w, slot + ALONG, weight * (first_y + yz * off_z))
+                self.add(w, slot + UP, weight * (first_z + zz * off_z))
+                self.add(w, slot + PUSHED_ALONG, -weight * (push_yy * off_y + push_yz * off_z))
+                self.add(w, slot + PUSHED_UP, -weight * (push_zy * off_y + push_zz * off_z))
+
+    @ti.func
+    def add(self, w, slot, value):
+        """Add to a slot; no atomic is needed, since one thread has the whole strip."""
+        self.strips[w, slot] = self.strips[w, slot] + value

@@ -33,6 +33,14 @@ class Points:
         self.volume, self.free, self.mass = own.reals(each, "volume", "free", "mass")
         self.strain, self.use = own.reals(each, "strain", "use")
 
+    @ti.func
+    def kinetic(self, w, i, quarter_y, quarter_z):
+        """Kinetic energy (J/m) of a point and of the velocity about it; `quarter`: of a cell's side squared (m²)."""
+        square = self.velocity[0][w, i] * self.velocity[0][w, i] + self.velocity[1][w, i] * self.velocity[1][w, i]
+        of_y = self.gradient[0][w, i] * self.gradient[0][w, i] + self.gradient[2][w, i] * self.gradient[2][w, i]
+        of_z = self.gradient[1][w, i] * self.gradient[1][w, i] + self.gradient[3][w, i] * self.gradient[3][w, i]
+        return 0.5 * self.mass[w, i] * (square + quarter_y * of_y + quarter_z * of_z)
+
     def fields(self) -> list[ti.Field]:
         """The arrays that a step changes."""
         return [*self.place, *self.velocity, *self.gradient, *self.deviator, self.volume, self.strain, self.use]

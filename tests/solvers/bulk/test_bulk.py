@@ -176,3 +176,21 @@ def test_bulk_that_is_too_fast_for_its_stiffness_stops_with_a_remedy():
         for _ in range(40):
             run(simulation, 0.1)
     simulation.close()
+
+
+def test_the_account_of_energy_closes_while_a_column_collapses():
+    """What is lost of kinetic, elastic and potential energy has gone where the account says, within 1 %."""
+    flat = box(5.0, 1.4)
+    column = bed(flat, [(-2.5, 0.0), (-1.5, 0.0), (-1.5, 1.0), (-2.5, 1.0)], 0.1, 0.55, wall=5.0)
+    simulation = Simulation(scene(flat, column), threads=1)
+
+    def energy(rows: dict[str, np.ndarray]) -> float:
+        return float(sum(rows[name][0] for name in ("kinetic", "elastic", "potential")))
+
+    start = energy(simulation.observe())
+    rows = run(simulation, 2.0)
+    lost = start - energy(rows)
+    assert lost > 0.3 * start
+    assert rows["bulk_losses"].sum() == pytest.approx(lost, rel=0.01)
+    assert (rows["bulk_losses"][0, 1:] >= 0.0).all()
+    simulation.close()
