@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from lab.paint.footage import Bed
 
 EDGE = (84, 66, 46)  # of the line along its surface
+SMOOTH = 1.6  # of the points' distance: what flows is stretched, and gaps between its rows are no voids
 LINE, STRONG = 0.085, 0.85  # thickness of that line in units of a page, and how strong it is
 
 
@@ -48,7 +49,7 @@ class BulkLayer:
 
     def _grid(self, bed: Bed, camera: Camera) -> Grid:
         """The grid over a bed's tank, kept as long as the picture's scale stays."""
-        spacing = float(np.sqrt(bed.footage.bulk.mean()))
+        spacing = SMOOTH * float(np.sqrt(bed.footage.bulk.mean()))
         made = Grid.over(bed.footage.outline, bed.footage.open_edges, spacing, 1.0 / camera.scale)
         kept = self._grids.get(bed)
         if kept is None or kept.distance != made.distance:
