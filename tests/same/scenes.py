@@ -38,6 +38,13 @@ SCENES = {
         "material.contact_angle": "0 deg",
         "material.asperities": "1 nm",
     },
+    "bulk": {
+        "grains": OFF,
+        "material": OFF,
+        "bulk": {"density": "850 kg/m^3", "friction": 0.3, "depth": "20 mm", "spacing": "2 mm", "start_friction": 0.4},
+        "run.accuracy": "standard",
+        "run.repeats": 1,
+    },
     "rice": {"grains.count": 40, "shapes.rice": {"cargo": "rice"}, "run.rest": 1e-3},
     "ship": {
         "motion.roll": OFF,

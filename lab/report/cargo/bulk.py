@@ -13,6 +13,11 @@ CANNOT = (
     "It cannot jam, arch or segregate, and it starts and stops at one angle, where grains start some degrees later and "
     "run on. Layers under two cells are not resolved; loose beds do not compact, dense ones do not dilate."
 )
+# How far it is from beds of grains (docs/physics/bulk-beside-grains.md)
+BESIDE = (
+    "shifts within 4 % of those of 120 across in rolls of a box, a tenth short in a hold with hoppers, half in sway of "
+    "half of g, at a twentieth of the time; 30 across lack a half; a wedge that lies at ship.repose costs nothing"
+)
 POINT_STEPS_PER_CORE = 8e6  # a second of one core (AMD EPYC, Zen 3)
 
 
@@ -36,6 +41,7 @@ def described(preset: Preset, scene) -> list[tuple[str, str]]:
             f"grains of {show(preset.bulk.diameter, 'm')}, {_grains(preset, bulk)} of them a metre of length",
         ),
         ("cannot", CANNOT),
+        ("beside grains", BESIDE),
     ]
 
 
