@@ -71,10 +71,10 @@ class Diagnostics:
             thickness * mass * self.carrier.gravity[0] * self.height(w, time, of_y / mass, of_z / mass)
         )
         self.rows[w, self.at.elastic] = thickness * elastic
-        losses = ti.Vector([zero, zero, zero, zero, zero])
+        losses = ti.Vector([zero, zero, zero, zero, -thickness * kinetic])  # what nodes gained and points have not
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             losses[0] += self.nodes.lost[u]
-            losses[4] += thickness * self.gather.spread.taken[u]
+            losses[4] += thickness * self.nodes.gained[u]
             for way in ti.static(range(3)):
                 losses[1 + way] += self.gather.lost[u, way]
         for way in ti.static(range(5)):

@@ -33,7 +33,15 @@ class Gather:
     """
 
     def __init__(
-        self, arrays: State, units: Units, points: Points, order: Order, spread: Spread, nodes: Nodes, bulk: Bulk
+        self,
+        arrays: State,
+        units: Units,
+        points: Points,
+        order: Order,
+        spread: Spread,
+        nodes: Nodes,
+        bulk: Bulk,
+        gravity: float,
     ):
         self.units, self.points, self.order, self.spread, self.nodes = units, points, order, spread, nodes
         self.rows, self.exact, self.law = bulk.grid.rows, arrays.exact, LAWS[bulk.material.law]()
@@ -47,7 +55,7 @@ class Gather:
             m.alpha,
             FASTEST * m.sound_speed,
             nodes.thickness,
-            m.density * DEEP * bulk.grid.smallest,
+            1.0 + m.density * gravity * DEEP * bulk.grid.smallest / m.bulk_modulus,
             m.start_friction - m.friction,
             m.softening,
         ]
@@ -60,20 +68,17 @@ class Gather:
         """Move the points of a unit's columns; returns whether all of them are slow enough."""
         w = self.units.world(u)
         zero = ti.cast(0.0, self.points.real)
-        kinetic = ti.cast(0.0, self.exact)
         most, total, lost = zero, zero, ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for c in range(self.units.first(u), self.units.end(u)):
             for k in range(self.order.first[w, c], self.order.first[w, c + 1]):
                 i = self.order.listed[w, k]
                 over, square = self.follow(w, c, i, dt)
                 most, total = ti.max(most, square), total + square
-                kinetic += ti.cast(self.order.kinetic(w, i), self.exact)
                 spent = self.strain(w, i, over, kick, dt)
                 for way in ti.static(range(3)):
                     lost[way] += ti.cast(spent[way], self.exact)
         for way in ti.static(range(3)):
             self.lost[u, way] = self.lost[u, way] + ti.cast(self.numbers[5], self.exact) * lost[way]
-        self.spread.taken[u] = self.spread.taken[u] - kinetic
         self.fastest[u] = ti.sqrt(most)
         if not total < 1e30:  # the largest value may pass over what is no number, a sum does not
             self.fastest[u] = total
@@ -124,7 +129,7 @@ class Gather:
         third, spin = opening / 3.0, 0.5 * (yz - zy)
         volume = p.volume[w, i] * (1.0 + dt * opening)
         astray = ti.max(over - BAND, zero)
-        if self.spread.pressure(w, i) > self.numbers[6] * ti.cast(self.nodes.carrier.gravity[0], p.real):
+        if p.free[w, i] > p.volume[w, i] * self.numbers[6]:
             astray = over - ti.max(-BAND, ti.min(BAND, over))
         smaller = volume * dt * EVENED * astray
         p.volume[w, i] = volume - smaller

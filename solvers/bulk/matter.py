@@ -40,7 +40,7 @@ class BulkMatter(Matter):
         order = Order(arrays, self.points, bulk)
         self.spread = Spread(arrays, units, self.points, order, bulk)
         self.nodes = Nodes(arrays, units, self.spread, order, bulk, self.load, carrier, self.thickness)
-        self.gather = Gather(arrays, units, self.points, order, self.spread, self.nodes, bulk)
+        self.gather = Gather(arrays, units, self.points, order, self.spread, self.nodes, bulk, scene.gravity)
         self.diagnostics = Diagnostics(arrays, self.gather, carrier, bulk.material.bulk_modulus)
         if carrier.responds:
             self.load.lag(self._held_mass(scene), relaxed=False)
@@ -102,12 +102,12 @@ class BulkMatter(Matter):
         self.load.forget()
         self.nodes.lost.fill(0.0)
         self.gather.lost.fill(0.0)
-        self.spread.taken.fill(0.0)
+        self.nodes.gained.fill(0.0)
 
     def bear(self, scene) -> None:
-        """Raise Unavailable: its material is compiled into no array that could be changed."""
-        if scene.of(Bulk).material != self.bulk.material:
-            raise Unavailable("bulk: start the experiment anew for another material")
+        """Raise Unavailable: no array has room for another material or gravity."""
+        if scene.of(Bulk).material != self.bulk.material or scene.gravity != self.scene.gravity:
+            raise Unavailable("bulk: start the experiment anew with another material or gravity")
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Places, velocities, pressures, mobilised friction and plastic strain (W, n) of the points now."""
@@ -124,7 +124,7 @@ class BulkMatter(Matter):
 
     def fields(self) -> list[ti.Field]:
         """The arrays that a step changes."""
-        return [*self.points.fields(), self.nodes.lost, self.gather.lost, self.spread.taken, *self.load.impulse]
+        return [*self.points.fields(), self.nodes.lost, self.gather.lost, self.nodes.gained, *self.load.impulse]
 
     def as_rigid(self) -> list[Body]:
         """The bulk of each world as one rigid body, per metre of the ship's length, in the tank's frame."""

@@ -55,18 +55,19 @@ class Nodes:
         world = Axis("world", bulk.worlds)
         length = grid.columns * grid.rows * 4
         (self.node,) = own.reals((world, Axis("slot", length)), "node", kept=False)
-        # What friction at the walls has taken since the start (J)
-        (self.lost,) = own.reals((units.axis,), "lost", kind=own.exact)
+        # What walls have taken since the start (J), and what nodes have gained of kinetic energy (J/m)
+        self.lost, self.gained = own.reals((units.axis,), "lost", "gained", kind=own.exact)
 
     @ti.func
     def sum_strips(self, w, c, row):
-        """Mass and momentum of a node, from the strips of three columns of points in one order."""
+        """What a node gathers from the strips of three columns of points, in one order; all zero without mass."""
         total = ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(SLOTS))])
         for k in ti.static(range(WIDE)):
             if c >= k:
                 slot = (((c - k) * WIDE + k) * self.rows + row) * SLOTS
-                for q in ti.static(range(SLOTS)):
-                    total[q] += self.spread.strips[w, slot + q]
+                if self.spread.strips[w, slot + MASS] > 0.0:
+                    for q in ti.static(range(SLOTS)):
+                        total[q] += self.spread.strips[w, slot + q]
         return total
 
     @ti.func
@@ -114,7 +115,7 @@ class Nodes:
                 self.load.book(u, tank, (self.numbers[1] / kick) * load, dt)
             if ti.static(books != self.twice):
                 self.lost[u] = self.lost[u] + self.numbers[1] * lost
-                self.spread.taken[u] = self.spread.taken[u] + gained
+                self.gained[u] = self.gained[u] + gained
 
     @ti.func
     def move_node(self, w, c, row, frame: ti.template(), kick):

@@ -25,12 +25,9 @@ class Spread:
 
     def __init__(self, arrays: State, units: Units, points: Points, order: Order, bulk: Bulk):
         self.units, self.points, self.order, self.rows = units, points, order, bulk.grid.rows
-        self.exact = arrays.exact
         own = arrays.under("bulk.spread")
         self.modulus = own.holding("modulus", np.array([bulk.material.bulk_modulus]), "one")
         length = bulk.grid.columns * WIDE * self.rows * SLOTS
-        # What the way from points to nodes and back has taken since the start, over the thickness (J/m)
-        (self.taken,) = own.reals((units.axis,), "taken", kind=own.exact)
         (self.strips,) = own.reals((Axis("world", points.worlds), Axis("slot", length)), "strips", kept=False)
 
     @ti.func
@@ -42,15 +39,13 @@ class Spread:
     @ti.func
     def spread(self, u, t, kick, dt):
         """Spread the points of a unit's columns to their strips."""
-        w, kinetic = self.units.world(u), ti.cast(0.0, self.exact)
+        w = self.units.world(u)
         for c in range(self.units.first(u), self.units.end(u)):
             begin = c * (WIDE * self.rows * SLOTS)
             for k in range(WIDE * self.rows * SLOTS):
                 self.strips[w, begin + k] = 0.0
             for k in range(self.order.first[w, c], self.order.first[w, c + 1]):
                 self.spread_point(w, self.order.listed[w, k], begin, kick)
-                kinetic += ti.cast(self.order.kinetic(w, self.order.listed[w, k]), self.exact)
-        self.taken[u] = self.taken[u] + kinetic
 
     @ti.func
     def spread_point(self, w, i, begin, kick):

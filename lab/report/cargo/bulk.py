@@ -15,10 +15,10 @@ CANNOT = (
 )
 # How far it is from beds of grains (docs/physics/bulk-beside-grains.md)
 BESIDE = (
-    "shifts within 4 % of those of 120 across in rolls of a box, a tenth short in a hold with hoppers, half in sway of "
-    "half of g, at a twentieth of the time; 30 across lack a half; a wedge that lies at ship.repose costs nothing"
+    "shifts within 4 % of those of 120 across in rolls of a box, an eighth short in a hold with hoppers, half in sway"
+    " of half of g, in a twentieth of the time; 30 across lack a half; a wedge that lies at ship.repose costs nothing"
 )
-POINT_STEPS_PER_CORE = 8e6  # a second of one core (AMD EPYC, Zen 3)
+POINT_STEPS_PER_CORE = 6e6  # a second of one core (AMD EPYC, Zen 3)
 
 
 def described(preset: Preset, scene) -> list[tuple[str, str]]:
