@@ -25,7 +25,10 @@ def test_a_group_and_a_word_choose_presets():
 
 @pytest.mark.parametrize(
     ("words", "said"),
-    [(("shp",), "the groups are flooding, funnel, "), (("ship", "--search", "porridge"), 'no preset has "porridge"')],
+    [
+        (("shp",), "the groups are bulk, flooding, funnel, "),
+        (("ship", "--search", "porridge"), 'no preset has "porridge"'),
+    ],
 )
 def test_nothing_found_is_said_in_a_sentence(words, said):
     done = call("list", *words)

@@ -55,7 +55,14 @@ def outcome(setting=None, **measures) -> Outcome:
 
 EXPERIMENTS = {name: one for part in reports() for name, one in experiments(part).items()}
 # The scenes of others, with so many particles or panels that they take seconds
-FINE = ("impact-air-fine", "impact-air-finest", "prismatic-cost", "prismatic-air-cost", "anti-roll-s175")
+FINE = (
+    "dam-break-air",
+    "impact-air-fine",
+    "impact-air-finest",
+    "prismatic-cost",
+    "prismatic-air-cost",
+    "anti-roll-s175",
+)
 FINE += ("section-test", "section-terms", "square", "cylinder")
 
 

@@ -157,6 +157,7 @@ def test_worlds_and_threads_do_not_change_the_bits():
     assert one == pytest.approx(np.concatenate([alone, alone]), abs=1e-9)  # another kernel may round differently
 
 
+@pytest.mark.slow
 def test_bands_agree_with_a_world_on_one_thread():
     """Each column sums on its own, so that bands add nothing; the compiler may round differently."""
     found = []

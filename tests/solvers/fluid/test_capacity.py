@@ -15,7 +15,8 @@ SPACING = 0.05
 STEPS = 12
 
 
-@pytest.mark.parametrize("periodic", [("x",), pytest.param((), marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("periodic", [("x",), ()])
 def test_the_entries_are_counted_as_lists_have_them_at_the_start(periodic):
     """All blocks of so small a tank are looked at, so the numbers are those of the lists."""
     run = Simulation(pool((10, 9, 12), 6, SPACING, periodic=periodic), threads=1, arch="cpu")
