@@ -30,6 +30,7 @@ from solvers.machine.quantity import ROLL
 OF = "bulk"
 PERIODS = 3
 FEW = "fewer than three periods"
+ROUNDED = 1e-3  # of a period, by which three of them may be longer than the run: frequencies are given with few digits
 LITTLE = 1e-9  # of the weight times the width: friction that has taken less has taken nothing
 
 
@@ -81,7 +82,7 @@ def _half_range(recording: Recording, moved: np.ndarray) -> Value:
     """Half the range of the shift (T, W), the mean of the last periods."""
     time, period = recording.series["time"], 1.0 / driving(recording)[1].frequency
     ends = time[-1] - period * np.arange(PERIODS + 1)
-    if ends[-1] < time[0] - 1e-9:
+    if ends[-1] < time[0] - ROUNDED * period:
         return over_worlds(np.full(recording.worlds, np.nan), "%", missing=FEW)
     parts = [0.5 * np.ptp(moved[(time > begin - 1e-9) & (time <= end + 1e-9)], axis=0) for end, begin in pairwise(ends)]
     uncertainty = 0.5 * np.abs(parts[0] - parts[-1])
