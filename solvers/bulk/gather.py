@@ -15,7 +15,6 @@ from solvers.machine.units import Units
 
 FASTEST = 0.5  # of the speed of sound: the highest speed of a point
 DEEP = 1.5  # cells below the surface a point knows the density from all sides: so far reach the nodes that carry it
-YIELDING, OPENING, KEEPING = range(3)  # what energy (J) goes to: shear, the end of contact, and the control of volume
 
 
 @ti.data_oriented
@@ -29,7 +28,7 @@ class Gather:
     many small errors of the velocity gradient would else be room that is lost, or won.
 
     A bed that `softens` holds μ_s + (μ_start − μ_s) exp(−γ/γ_s) after the plastic shear strain γ: grains must first
-    ride up on each other. It does not heal at rest (an exponential law of strain softening; ours).
+    ride up on each other. It does not heal at rest. (Source: ours, softening that is exponential in the strain.)
     """
 
     def __init__(

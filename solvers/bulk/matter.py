@@ -14,6 +14,7 @@ from solvers.bulk.start import sideways
 from solvers.bulk.state import Points
 from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
+from solvers.motion.carrier import per_slab
 from solvers.ship.body import Body, frozen
 from solvers.tank.context import Context
 from solvers.tank.matter import Matter
@@ -43,23 +44,25 @@ class BulkMatter(Matter):
         self.gather = Gather(arrays, units, self.points, order, self.spread, self.nodes, bulk, scene.gravity)
         self.diagnostics = Diagnostics(arrays, self.gather, carrier, bulk.material.bulk_modulus)
         if carrier.responds:
-            self.load.lag(self._held_mass(scene), relaxed=False)
+            self.load.lag(self._held_mass(), relaxed=False)
         self.before = (Phase(order.sort), Phase(self.spread.spread, units), Phase(self.nodes.react, units))
         moving = [self.nodes.kick] if carrier.responds else []
         self.after = tuple(Phase(act, units) for act in (*moving, self.gather.move))
 
-    def _held_mass(self, scene) -> np.ndarray:
-        """The added mass (W, 3, 3), per metre of a ship, of what walls hold at once: all within a cell of them."""
+    def _held_mass(self) -> np.ndarray:
+        """The added mass (W, 3, 3), per metre of a ship, of the points whose next node walls hold."""
         points, grid = self.bulk.points, self.bulk.grid
-        near = points["position"][0]
-        node = np.round((near - grid.origin[0]) / grid.spacing[0]).astype(int)
-        node = np.clip(node, 0, [grid.columns - 1, grid.rows - 1])
-        held = np.abs(grid.walls).max(axis=(-1, -2))[tuple(node.T)] > 0.0
-        mass, (y, z) = points["mass"][0] * held, near.T
-        total, of_y, of_z = mass.sum(), mass @ y, mass @ z
-        matrix = [[total, 0.0, -of_z], [0.0, total, of_y], [-of_z, of_y, mass @ (y * y + z * z)]]
-        shares = [self.thickness * scene.tanks[0].share(vessel.length) for vessel in scene.vessels]
-        return np.array([share * np.array(matrix) for share in shares])
+        place, tank = points["position"][0], np.repeat(np.arange(len(self.bulk.fill)), self.bulk.fill)
+        node = np.round((place - grid.origin[tank]) / grid.spacing[tank]).astype(int)
+        node = np.clip(node, 0, np.column_stack([np.diff(grid.first), [grid.rows] * len(grid.origin)])[tank] - 1)
+        held = np.abs(grid.walls).max(axis=(-1, -2))[node[:, 0] + grid.first[tank], node[:, 1]] > 0.0
+        y, z = place.T
+        found = []
+        for factor in per_slab(self.scene):
+            mass = factor * points["mass"][0] * held
+            total, of_y, of_z = mass.sum(), mass @ y, mass @ z
+            found.append([[total, 0.0, -of_z], [0.0, total, of_y], [-of_z, of_y, mass @ (y * y + z * z)]])
+        return np.array(found)
 
     @property
     def extent(self) -> float:
@@ -130,11 +133,7 @@ class BulkMatter(Matter):
         """The bulk of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
         p = self.points
         y, z, mass, volume = p.read(*p.place, p.mass, p.volume)
-        shares = np.array(
-            [[self.thickness * tank.share(vessel.length) for tank in self.scene.tanks] for vessel in self.scene.vessels]
-        )
-        factor = np.repeat(shares, self.bulk.fill, axis=1)
-        return [frozen(*one) for one in zip(y, z, factor * mass, volume, strict=True)]
+        return [frozen(*one) for one in zip(y, z, per_slab(self.scene) * mass, volume, strict=True)]
 
 
 def make_bulk(scene, context: Context) -> BulkMatter | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from solvers.bulk.given import POISSON
 from solvers.bulk.grid import Grid
-from solvers.tank.outline import inside
+from solvers.tank.outline import inside, moments
 
 PER_CELL = 2  # points along an axis of a cell
 FINE = 8  # samples along an axis of what a point stands for
@@ -20,7 +20,7 @@ POINT = np.dtype([("position", float, 2), ("volume", float), ("mass", float), ("
 def at_rest(
     region: np.ndarray, grid: Grid, tank: int, density: float, modulus: float, friction: float, gravity: float
 ) -> np.ndarray:
-    """Points (n,) of POINT in a `region` (m, 2) m of a tank, four a cell, in all of its volume times the `density`.
+    """Points (n,) of POINT, four a cell, in a `region` (m, 2) m, counter-clockwise, of the mass that fills it.
 
     The pressure is that under the weight of the column above, with the stress sideways as of `sideways`. Raises
     ValueError if no point fits in.
@@ -61,13 +61,7 @@ def _laid(region: np.ndarray, grid: Grid, tank: int) -> tuple[np.ndarray, np.nda
     middle = (samples * held[..., None]).sum(axis=(1, 3)) / np.maximum(number, 1)[..., None]
     wanted = number >= max(1.0, LEAST * FINE**2)
     volume = number[wanted] / FINE**2 * np.prod(size)
-    return middle[wanted], volume * (_area(region) / volume.sum() if volume.size else 1.0)
-
-
-def _area(polygon: np.ndarray) -> float:
-    """The area (m²) of a polygon."""
-    y, z = polygon.T
-    return float(0.5 * abs(y @ np.roll(z, -1) - z @ np.roll(y, -1)))
+    return middle[wanted], volume * (moments(region)[0] / volume.sum() if volume.size else 1.0)
 
 
 def _top(region: np.ndarray, y: np.ndarray) -> np.ndarray:

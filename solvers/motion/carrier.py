@@ -67,6 +67,6 @@ def per_metre(scene, position: np.ndarray) -> np.ndarray:
 
 
 def per_slab(scene) -> np.ndarray:
-    """Factors (W, n) from masses of particles of water per metre of slab to those per metre of ship, by their tanks."""
+    """Factors (W, n) from masses of particles per metre of slab to those per metre of ship, by their tanks."""
     rows = [[tank.thickness * tank.share(ship.length) for tank in scene.tanks] for ship in scene.vessels]
     return np.repeat(np.array(rows), scene.fills, axis=1)

@@ -16,7 +16,7 @@ CANNOT = (
 # How far it is from beds of grains (docs/physics/bulk-beside-grains.md)
 BESIDE = (
     "shifts within 4 % of those of 120 across in rolls of a box, an eighth short in a hold with hoppers, half in sway"
-    " of half of g, in a twentieth of the time; 30 across lack a half; a wedge that lies at ship.repose costs nothing"
+    " of half of g, in a sixteenth of the time; 30 across lack a half; a wedge that lies at ship.repose costs nothing"
 )
 POINT_STEPS_PER_CORE = 6e6  # a second of one core (AMD EPYC, Zen 3)
 
@@ -35,7 +35,10 @@ def described(preset: Preset, scene) -> list[tuple[str, str]]:
         ("bed", f"{show(preset.bulk.density, 'kg/m^3')}, {bulk.count} points, four a cell of {cell}"),
         ("friction", f"{material.friction:.3g}, a slope of {angle:.1f} deg; {law}"),
         ("at walls", walls),
-        ("stiffness", f"{show(material.young, 'Pa')}, {preset.bulk.stiffness:g} times the weight over the bottom"),
+        (
+            "stiffness",
+            f"{show(material.young, 'Pa')}, {preset.bulk.stiffness:g} times the weight over the bottom; stiffer shifts less",
+        ),
         (
             "stands for",
             f"grains of {show(preset.bulk.diameter, 'm')}, {_grains(preset, bulk)} of them a metre of length",

@@ -9,7 +9,8 @@ class MuOfI:
 
     The shear rate γ̇ is that of the plastic part of a step, (|s_t| − |s|)/(G Δt) of the shear stress s_t that was tried
     elastically. With α = G Δt √p I_0/(d √ρ_s) the stress is then the smaller root of
-    |s|² − (α + |s_t| + μ_2 p) |s| + μ_s p α + μ_2 p |s_t| = 0 (Dunatunga & Kamrin 2015, section 3).
+    |s|² − (α + |s_t| + μ_2 p) |s| + μ_s p α + μ_2 p |s_t| = 0, which follows from the two (the return mapping of
+    Dunatunga & Kamrin 2015 in closed form).
 
     Limits: a local law. Layers of a few grains, and beds about to start, hold more (Kamrin & Henann 2014).
 
