@@ -37,7 +37,7 @@ def described(preset: Preset, scene) -> list[tuple[str, str]]:
         ("at walls", walls),
         (
             "stiffness",
-            f"{show(material.young, 'Pa')}, {preset.bulk.stiffness:g} times the weight over the bottom; stiffer shifts less",
+            f"{show(material.young, 'Pa')}, {preset.bulk.stiffness:g} times the bottom's stress; stiffer shifts less",
         ),
         (
             "stands for",
