@@ -7,7 +7,7 @@ import taichi as ti
 
 from solvers.bulk import quantities
 from solvers.bulk.gather import Gather
-from solvers.bulk.nodes import HAS, MAY
+from solvers.bulk.nodes import HAS, MAY, NODE
 from solvers.bulk.state import ALONG_Y, ALONG_Z, SHEAR
 from solvers.bulk.weights import weights
 from solvers.machine.quantity import parted, places
@@ -94,7 +94,7 @@ class Diagnostics:
         has, may, over = ti.cast(0.0, p.real), ti.cast(0.0, p.real), ti.cast(0.0, p.real)
         for a in ti.static(range(3)):
             for b in ti.static(range(3)):
-                slot = 4 * ((column + a) * o.rows + row + b)
+                slot = NODE * ((column + a) * o.rows + row + b)
                 has += along[a] * up[b] * self.nodes.node[w, slot + HAS]
                 may += along[a] * up[b] * self.nodes.node[w, slot + MAY]
         if may > 0.0 and has > 0.0:

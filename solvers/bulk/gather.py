@@ -5,7 +5,7 @@ import taichi as ti
 
 from solvers.bulk.given import BAND, EVENED, Bulk
 from solvers.bulk.laws import LAWS
-from solvers.bulk.nodes import HAS, MAY, V_Y, V_Z, Nodes
+from solvers.bulk.nodes import HAS, MAY, NODE, OLD_Y, OLD_Z, V_Y, V_Z, Nodes
 from solvers.bulk.order import Order
 from solvers.bulk.spread import WIDE, Spread
 from solvers.bulk.state import ALONG_Y, ALONG_Z, SHEAR, Points
@@ -20,6 +20,11 @@ DEEP = 1.5  # cells below the surface a point knows the density from all sides: 
 @ti.data_oriented
 class Gather:
     """Moves the points with the nodes, and lets their stresses follow.
+
+    A point takes the nodes' change of velocity over, and keeps what its own differs from the nodes' old one (Fei et al.
+    2021, AFLIP). That difference fades at the rate √(g/h), in about the time in which grains fall by a cell. Points
+    that took the nodes' velocity itself would lose the difference in every step: a viscosity of the order h²/Δt, which
+    holds a bed the more the shorter the steps.
 
     A point is elastic (Jaumann's rate) below yield, else its shear stress returns to what the `law` holds at its
     pressure, which no plastic strain changes; looser than at rest it is free of stress (Dunatunga & Kamrin 2015).
@@ -57,6 +62,7 @@ class Gather:
             1.0 + m.density * gravity * DEEP * bulk.grid.smallest / m.bulk_modulus,
             m.start_friction - m.friction,
             m.softening,
+            (gravity / bulk.grid.smallest) ** 0.5,
         ]
         self.numbers = own.holding("numbers", np.array(numbers), "number")
         (self.fastest,) = own.reals((units.axis,), "fastest", kept=False)
@@ -71,7 +77,7 @@ class Gather:
         for c in range(self.units.first(u), self.units.end(u)):
             for k in range(self.order.first[w, c], self.order.first[w, c + 1]):
                 i = self.order.listed[w, k]
-                over, square = self.follow(w, c, i, dt)
+                over, square = self.follow(w, c, i, kick, dt)
                 most, total = ti.max(most, square), total + square
                 spent = self.strain(w, i, over, kick, dt)
                 for way in ti.static(range(3)):
@@ -84,7 +90,7 @@ class Gather:
         return self.fastest[u] < self.numbers[4]
 
     @ti.func
-    def follow(self, w, c, i, dt):
+    def follow(self, w, c, i, kick, dt):
         """Move a point with its nodes; returns how much denser (share) they know it to be, and its speed squared."""
         p, tank = self.points, self.order.of(i)
         zero = ti.cast(0.0, p.real)
@@ -92,14 +98,17 @@ class Gather:
         row, far_z = self.order.cells(w, i, 1)
         along, up = weights(far_y), weights(far_z)
         v_y, v_z, yy, yz, zy, zz, has, may = zero, zero, zero, zero, zero, zero, zero, zero
+        old_y, old_z = zero, zero
         for a in ti.static(range(WIDE)):
-            first = ((c + a) * self.rows + row) * 4
+            first = ((c + a) * self.rows + row) * NODE
             sum_y, sum_z, tilt_y, tilt_z = zero, zero, zero, zero
             for b in ti.static(range(WIDE)):
-                slot = first + 4 * b
+                slot = first + NODE * b
                 of_y, of_z = up[b] * self.nodes.node[w, slot + V_Y], up[b] * self.nodes.node[w, slot + V_Z]
                 sum_y, sum_z = sum_y + of_y, sum_z + of_z
                 tilt_y, tilt_z = tilt_y + (b - far_z) * of_y, tilt_z + (b - far_z) * of_z
+                old_y += along[a] * (up[b] * self.nodes.node[w, slot + OLD_Y])
+                old_z += along[a] * (up[b] * self.nodes.node[w, slot + OLD_Z])
                 has += along[a] * (up[b] * self.nodes.node[w, slot + HAS])
                 may += along[a] * (up[b] * self.nodes.node[w, slot + MAY])
             v_y, v_z = v_y + along[a] * sum_y, v_z + along[a] * sum_z
@@ -109,7 +118,9 @@ class Gather:
         if may > 0.0:
             over = has * p.volume[w, i] / (p.mass[w, i] * may) - 1.0
         finer = [4.0 * ti.cast(self.order.table[tank, 2 + a], p.real) for a in ti.static(range(2))]
-        p.velocity[0][w, i], p.velocity[1][w, i] = v_y, v_z
+        left = ti.max(zero, 1.0 - kick * self.numbers[9])
+        p.velocity[0][w, i] = v_y + left * (p.velocity[0][w, i] - old_y)
+        p.velocity[1][w, i] = v_z + left * (p.velocity[1][w, i] - old_z)
         p.gradient[0][w, i], p.gradient[1][w, i] = finer[0] * yy, finer[1] * yz
         p.gradient[2][w, i], p.gradient[3][w, i] = finer[0] * zy, finer[1] * zz
         p.place[0][w, i] = p.place[0][w, i] + dt * v_y

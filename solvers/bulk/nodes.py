@@ -12,7 +12,9 @@ from solvers.machine.units import Units
 from solvers.motion.frame import turned
 from solvers.tank.load import Load
 
-V_Y, V_Z, HAS, MAY = range(4)  # of a node: its velocity (m/s), its mass (kg/m), and the volume (m²) inside its tank
+# Of a node: its velocity (m/s), its mass (kg/m), the volume (m²) inside its tank, and the velocity before the step
+V_Y, V_Z, HAS, MAY, OLD_Y, OLD_Z = range(6)
+NODE = 6  # numbers of a node
 
 
 @ti.data_oriented
@@ -53,7 +55,7 @@ class Nodes:
         share = np.where(grid.share > FREE * np.prod(grid.spacing[grid.kept], axis=1)[:, None], grid.share, 0.0)
         self.share = own.holding("share", share.reshape(-1), "node")
         world = Axis("world", bulk.worlds)
-        length = grid.columns * grid.rows * 4
+        length = grid.columns * grid.rows * NODE
         (self.node,) = own.reals((world, Axis("slot", length)), "node", kept=False)
         # What walls have taken since the start (J), and what nodes have gained of kinetic energy (J/m)
         self.lost, self.gained = own.reals((units.axis,), "lost", "gained", kind=own.exact)
@@ -127,7 +129,7 @@ class Nodes:
         zero = ti.cast(0.0, self.real)
         push, taken, gain = ti.Vector([zero, zero, zero]), zero, zero
         total, slot = self.sum_strips(w, c, row), c * self.rows + row
-        v_y, v_z = zero, zero
+        v_y, v_z, old_y, old_z = zero, zero, zero, zero
         if total[MASS] > 0.0:
             y, z = self.places[c, 0], self.places[c, 1] + row * self.places[c, 2]
             b_y, b_z = ti.cast(frame[0], self.real), ti.cast(frame[1], self.real)
@@ -158,6 +160,7 @@ class Nodes:
                 push = ti.Vector([push_y, push_z, y * push_z - z * push_y])
                 taken = 0.5 * (push_y * (old_y + v_y) + push_z * (old_z + v_z))
             gain = 0.5 * total[MASS] * (v_y * v_y + v_z * v_z - old_y * old_y - old_z * old_z)
-        self.node[w, 4 * slot + V_Y], self.node[w, 4 * slot + V_Z] = v_y, v_z
-        self.node[w, 4 * slot + HAS], self.node[w, 4 * slot + MAY] = total[MASS], self.share[slot]
+        self.node[w, NODE * slot + V_Y], self.node[w, NODE * slot + V_Z] = v_y, v_z
+        self.node[w, NODE * slot + HAS], self.node[w, NODE * slot + MAY] = total[MASS], self.share[slot]
+        self.node[w, NODE * slot + OLD_Y], self.node[w, NODE * slot + OLD_Z] = old_y, old_z
         return push, taken, gain

