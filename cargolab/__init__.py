@@ -10,6 +10,9 @@ from cargolab import _hidden
 
 if TYPE_CHECKING:
     from cargolab._calls import (
+        Error,
+        Preset,
+        Simulation,
         __version__,
         calibrate,
         explain,
@@ -25,6 +28,9 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Error",
+    "Preset",
+    "Simulation",
     "__version__",
     "calibrate",
     "explain",

@@ -1,10 +1,14 @@
 """What `cargolab` offers: each call hands on to the room of `lab` that does it, which it loads only then."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cargolab._preset import Preset
+from cargolab._simulation import Simulation
 from lab import __version__, dotted, resume, run, sweep
+from lab.base.errors import Told as Error
+from lab.preset.python.written import asked
 
 if TYPE_CHECKING:
     from lab.naval.flooding.results import Results
@@ -13,6 +17,9 @@ if TYPE_CHECKING:
     from lab.sweeps.calibration_report import Calibration
 
 __all__ = [
+    "Error",
+    "Preset",
+    "Simulation",
     "__version__",
     "calibrate",
     "explain",
@@ -29,7 +36,7 @@ __all__ = [
 
 
 def calibrate(
-    preset: str,
+    preset: "str | Path | Mapping | Preset",
     target: str,
     vary: str,
     out: Path | str | None = None,
@@ -47,11 +54,12 @@ def calibrate(
     """
     from lab.preset.find import screen
 
-    given = dotted(overrides, repeats)
-    screen(preset, given)  # before the slow imports
+    name, changes = asked(preset)
+    given = changes | dotted(overrides, repeats)
+    screen(name, given)  # before the slow imports
     from lab.sweeps.calibrate import calibrate as calibrated
 
-    return calibrated(preset, target, vary, given, out, quiet=quiet, cluster=cluster)
+    return calibrated(name, target, vary, given, out, quiet=quiet, cluster=cluster)
 
 
 def open(path: Path | str, *, sound: bool = False) -> "Recording":
@@ -115,11 +123,12 @@ def presets(word: str = "") -> dict[str, str]:
     return {name: title for name, title in names().items() if name.startswith(word)}
 
 
-def explain(preset: str, **overrides: object) -> str:
+def explain(preset: "str | Path | Mapping | Preset", **overrides: object) -> str:
     """What a preset simulates, by which models, and what it will cost; `overrides` as in `run`."""
     from lab.preset.find import load
 
-    loaded = load(preset, dotted(overrides))
+    name, changes = asked(preset)
+    loaded = load(name, changes | dotted(overrides))
     from lab.report.explain import explain as explained
 
     return explained(loaded)
@@ -144,7 +153,7 @@ def render(
 
 
 def view(
-    preset: str | None = None,
+    preset: "str | Path | Mapping | Preset | None" = None,
     out: Path | str | None = None,
     *,
     size: tuple[int, int] = (1280, 720),
@@ -153,4 +162,5 @@ def view(
     """Run a preset live in a window and steer it; returns the folder of what was kept. Without one, choose there."""
     from lab.view.windows import open_window
 
-    return open_window(preset, dotted(overrides), size, None if out is None else Path(out), "auto")
+    name, changes = (None, {}) if preset is None else asked(preset)
+    return open_window(name, changes | dotted(overrides), size, None if out is None else Path(out), "auto")

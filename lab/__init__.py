@@ -10,6 +10,7 @@ from lab.base.caches import provide_for_matplotlib
 from lab.base.costs import importing
 
 if TYPE_CHECKING:
+    from cargolab._preset import Preset
     from lab.runs.runner import Result
     from lab.sweeps.calibration_report import Calibration
     from lab.sweeps.sweep import SweepResult
@@ -20,7 +21,7 @@ provide_for_matplotlib()
 
 
 def run(
-    preset: str,
+    preset: str | Path | Mapping | Preset,
     out: Path | str | None = None,
     *,
     repeats: int | None = None,
@@ -36,16 +37,18 @@ def run(
     """
     with importing():
         from lab.preset.find import screen
+        from lab.preset.python.written import asked
 
-        given = dotted(overrides, repeats)
-        screen(preset, given)  # before the slow imports
+        name, changes = asked(preset)
+        given = changes | dotted(overrides, repeats)
+        screen(name, given)  # before the slow imports
         from lab.runs.runner import run_preset
 
-    return run_preset(preset, given, out, video=video, plots=plots, quiet=quiet)
+    return run_preset(name, given, out, video=video, plots=plots, quiet=quiet)
 
 
 def sweep(
-    preset: str,
+    preset: str | Path | Mapping | Preset,
     axes: Mapping[str, str | Sequence],
     out: Path | str | None = None,
     *,
@@ -61,13 +64,15 @@ def sweep(
     axes: for each key a range or list as text, as `cargolab sweep` takes it, or a sequence of values; cluster: the
     address of a Dask scheduler whose workers run the points; the other options as in `run`.
     """
+    from lab.preset.python.written import asked
     from lab.sweeps.axes import screen_first
 
-    given = dotted(overrides, repeats)
-    screen_first(preset, axes, given)
+    name, changes = asked(preset)
+    given = changes | dotted(overrides, repeats)
+    screen_first(name, axes, given)
     from lab.sweeps.sweep import run_sweep
 
-    return run_sweep(preset, axes, given, out, video=video, plots=plots, quiet=quiet, cluster=cluster)
+    return run_sweep(name, axes, given, out, video=video, plots=plots, quiet=quiet, cluster=cluster)
 
 
 def resume(

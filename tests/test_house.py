@@ -37,7 +37,7 @@ FLOORS = {  # from the ground up: a room imports those before it
         *("base", "preset", "assembly", "naval", "recording", "measures", "paint", "report"),
         *("runs", "sweeps", "view", "studies", "cli"),
     ),
-    "cargolab": ("_hidden", "_calls"),
+    "cargolab": ("_hidden", "_preset", "_simulation", "_calls"),
     "benchmarks": (
         *("aside", "devices", "remembered", "bench", "peers", "speed", "accuracy", "stability", "water"),
         *("outlines", "gpu"),

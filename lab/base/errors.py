@@ -2,6 +2,8 @@
 
 import errno
 
+from solvers.machine.errors import Told
+
 REMEDIES = {
     errno.ENOSPC: "free some space or choose another folder with --out",
     errno.EDQUOT: "free some space or choose another folder with --out",
@@ -11,7 +13,7 @@ REMEDIES = {
 }
 
 
-class LabError(Exception):
+class LabError(Told):
     """An error with one sentence that names the key or file at fault and the remedy."""
 
 

@@ -70,8 +70,9 @@ class Progress:
 
     def start(self, stage: str, total: float | None, cost: float = 0.0) -> None:
         """Begin a stage that ends at `total`, in any unit, and adds `cost` to the overall bar."""
+        again = stage == self.stage
         self.stage, self.begun_stage, self.told = stage, time.monotonic(), time.monotonic()
-        if not self.live:
+        if not (self.live or again):
             self.say(f"{stage} …")
             self._excuse(f"{stage}: {COMPILES}")
         self.task, self.total, self.cost = self.bar.add_task(stage, total=total), total, cost

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from lab.base.data import FOLDER, PREFIX, data_file
 from lab.base.errors import LabError
+from lab.preset.python.plain import plain
 from lab.preset.units import quoted
 
 FILE = "file"  # the key of a table that may be said in place of the table: history = "record.csv"
@@ -31,7 +32,7 @@ def nested(overrides: Mapping) -> dict:
             raise LabError(f"{quoted(key)} is not a key; write it like grains.diameter.")
         if parts[0] in ("based_on", "quick"):
             raise LabError(f"{parts[0]}: cannot be overridden; write a preset file that says it.")
-        value = value.tolist() if hasattr(value, "tolist") else value  # numpy's numbers, as sweeps in Python have them
+        value = plain(value)
         for part in reversed(parts):
             value = {part: value}
         result = merged(result, value, alternatives={})

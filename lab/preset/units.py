@@ -79,8 +79,7 @@ PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 FACTOR = re.compile(r"\s*([*/·]?)\s*([^\W\d]+|[%°]|1(?=\s*/))(?:\s*(?:\^|\*\*)\s*(-?[1-9]))?")
 TYPOGRAPHY = str.maketrans({"\N{MINUS SIGN}": "-", "²": "^2", "³": "^3"})
-LONGEST = 100  # characters of a quantity
-MOST_FACTORS = 1000  # kept, of units as they are written
+LONGEST, MOST_FACTORS = 100, 1000  # characters of a quantity; factors kept, of units as they are written
 
 # From units as they are written to SI. Pint takes long to import and over each unit, so those of most presets are here;
 # a test asks it for the same.
@@ -111,8 +110,7 @@ SAME = {"1/s": "Hz"}  # SI units of one dimension
 SYMBOLS = {unit: SAME.get(symbol, symbol) for unit, symbol in [*USUAL, *zip(KINDS, KINDS, strict=True)]}
 SYMBOLS = {unit: symbol for unit, symbol in SYMBOLS.items() if unit not in ("", "1")}
 _factors: dict[tuple[str, str], float] = dict(USUAL)
-QUOTED = 40  # characters of a user's text that an error quotes
-LONGEST_PATH = 100  # characters of a path that an error quotes
+QUOTED, LONGEST_PATH = 40, 100  # characters of a user's text, and of a path, that an error quotes
 
 
 @cache
@@ -171,6 +169,14 @@ def parse(value: object, symbol: str) -> float:
     if not math.isfinite(number):
         raise LabError(f"{quoted(value)} is not a finite number; {needed(symbol)}.")
     return number
+
+
+def known_unit(unit: str) -> bool:
+    """Whether the lab knows a unit as it is written; "" is that of a pure number."""
+    try:
+        return _unit(unit, unit, "1") is not None
+    except LabError:
+        return False
 
 
 def in_unit(text: str, unit: str, key: str) -> float:

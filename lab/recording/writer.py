@@ -122,11 +122,11 @@ def new_recording(
 class Recorder:
     """Appends rows to a recording; a context manager that closes it with its final status.
 
-    folder: of the recording, new or of an interrupted run; samples, frames: numbers of rows of the series and of the
-    frames to keep; rows after these are overwritten as the run continues; flush_every: wall-clock seconds between
-    flushes, which a killed run may lose; buffer: most bytes kept in memory. The caller keeps `wall_s` and `grain_steps`
-    up to date; every flush writes them. Raises LabError if the folder cannot be written or has fewer rows than are to
-    be kept, Unusable if one of these is damaged.
+    folder: of the recording, new or of an interrupted run; samples, frames, actions: numbers of rows of the series, of
+    the frames and of what the user did to keep; later rows are overwritten as the run continues; flush_every: seconds
+    of wall-clock time between flushes, which a killed run may lose; buffer: most bytes kept in memory. The caller keeps
+    `wall_s` and `grain_steps` up to date; every flush writes them. Raises LabError if the folder cannot be written or
+    has fewer rows than are to be kept, Unusable if one of these is damaged.
     """
 
     def __init__(
@@ -135,6 +135,7 @@ class Recorder:
         *,
         samples: int = 0,
         frames: int = 0,
+        actions: int = 0,
         flush_every: float = FLUSH_EVERY,
         buffer: int = BUFFER_BYTES,
     ) -> None:
@@ -147,8 +148,7 @@ class Recorder:
             self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
             if format_of(self._file) not in (FORMAT, older.WITH_OTHER_NAMES):
                 raise Unusable(f"{self.path} was begun by another version: start the run again.")
-            kept = {"series": samples, "frames": frames}
-            kept |= {"steering": 0} if "steering" in self._file else {}
+            kept = {"series": samples, "frames": frames} | ({"steering": actions} if "steering" in self._file else {})
             self._tables = {name: _Table(self._file, name, rows) for name, rows in kept.items()}
             self._spare = SPARE_BYTES + sum(table.chunk_bytes for table in self._tables.values())
             if any(table.short for table in self._tables.values()):

@@ -6,109 +6,35 @@ A recording has the same bits as that of its run alone by the same schedule, unl
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from functools import partial
-from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.drawn import classes
-from lab.assembly.grains import fixed_of, radii_of
-from lab.assembly.scene import build, largest_multiple, volumes
-from lab.assembly.water import particles, updates
+from lab.assembly.grains import radii_of
+from lab.assembly.scene import largest_multiple
+from lab.assembly.water import updates
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
 from lab.base.trust import check_state
-from lab.preset.fields import marked
-from lab.preset.find import LoadedPreset
-from lab.preset.schema import Preset
 from lab.preset.units import show
-from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
+from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Recorder
 from lab.recording.ship_end import VERBS
 from lab.runs.beds import settled, settling
 from lab.runs.checkpoint import Checkpoint, remove_checkpoint
+from lab.runs.run import Run
 from solvers.machine.errors import BadState
-from solvers.machine.runtime import available_cores, choose_arch
 from solvers.machine.state import without_worlds
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from solvers.time.schedules import choose_schedule, units_a_world, work
+from solvers.time.schedules import work
 
 # Steps per call of the solver times grains per world: a delay after Ctrl-C of some tenths of a second for each world on
 # a core. It must not depend on other runs or on the clock, since grains may be renumbered between calls.
 GRAIN_STEPS_A_CALL = 2_000_000
 
-
-def outlines_of(preset: Preset, scene: Scene) -> Outlines | None:
-    """The outlines of a preset's irregular grains, None if all are discs."""
-    shapes = scene.grains.shapes if scene.grains else None
-    return Outlines(shapes.outlines, classes(preset), shapes.which) if shapes else None
-
-
-@dataclass(frozen=True)
-class Run:
-    """A run ready to start: its preset, the folder of its recording, its scene, initial positions (W, n, 2) m."""
-
-    loaded: LoadedPreset
-    folder: Path
-    scene: Scene
-    position: np.ndarray
-
-    @property
-    def shared(self) -> tuple:
-        """The values that must be equal for two runs to share a batch."""
-        preset = self.loaded.resolved
-        alike = tuple(attrgetter(key)(preset) for key in marked(Preset, "alike"))
-        return self.scene.shared(), settling(preset), preset.duration, alike
-
-    @property
-    def can_share(self) -> bool:
-        """Whether it may share a batch; not in schedule per-band, which divides a world by the number of threads."""
-        return self.device()["schedule"] != "per-band"
-
-    def device(self, worlds: int = 0) -> dict[str, object]:
-        """The device for a batch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
-        settings, own, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
-        responds, worlds = self.scene.responds, worlds or own
-        threads, asked = settings.threads or available_cores(), (self.scene.particles > 0, worlds * count)
-        arch = "cpu" if responds and settings.arch == "auto" else choose_arch(settings.arch, settings.precision, *asked)
-        schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, responds)
-        if arch != "cpu":
-            return {"arch": arch, "schedule": schedule}
-        units = worlds * units_a_world(schedule, worlds, count, threads)
-        return {"arch": arch, "schedule": schedule, "threads": min(threads, units)}
-
-    def make_recording(self, steered: bool = False, device: Mapping[str, object] | None = None) -> None:
-        """Create the recording without rows; device: of the batch, None: of this run. Raises LabError."""
-        preset, scene = self.loaded.resolved, self.scene
-        new_recording(
-            self.folder,
-            preset=self.loaded.name,
-            given=self.loaded.given_text,
-            resolved=preset,
-            radius=radii_of(scene),
-            outline=scene.outline,
-            step=scene.step,
-            **volumes(scene),
-            kind=scene.grains.kind if scene.grains else None,
-            fixed=fixed_of(scene),
-            open_edges=scene.open_edges,
-            parts={name: part.line for name, part in preset.parts.items()},
-            shapes=outlines_of(preset, scene),
-            machine=self.device() if device is None else device,
-            steered=steered,
-        )
-
-
-def prepare(loaded: LoadedPreset, folder: Path) -> Run:
-    """Prepare a run of this preset with its recording in `folder`.
-
-    Raises LabError if the grains or the step do not fit, Unavailable if this machine lacks the device.
-    """
-    choose_arch(loaded.resolved.run.arch, loaded.resolved.run.precision)
-    return Run(loaded, folder, *build(loaded.resolved))
+Tell = Callable[[Mapping[str, np.ndarray]], object]
 
 
 def run_batch(
@@ -173,18 +99,49 @@ class Batch:
         if self.runs:
             self.save()
 
-    def run(self, interrupt: Interrupt) -> None:
-        """Take samples until the end. On an interrupt, saves everything and raises KeyboardInterrupt."""
+    @property
+    def simulation(self) -> Simulation | None:
+        """The solver's simulation; None before the start."""
+        return self._simulation
+
+    @property
+    def recorder(self) -> Recorder:
+        """The recorder of the only run."""
+        (recorder,) = self._recorders
+        return recorder
+
+    @property
+    def taken(self) -> int:
+        """How many samples have been taken."""
+        return self._recorders[0].rows[0]
+
+    def rewind(self, rows: tuple[int, int], actions: int) -> None:
+        """Drop what the only run has recorded after so many rows of series and frames, and actions of the user."""
+        self.recorder.close("stopped: set back by the user")
+        folder, (samples, frames) = self.runs[0].folder, rows
+        opened = Recorder(folder, samples=samples, frames=frames, actions=actions)
+        self._recorders = [self._stack.enter_context(opened)]
+
+    @property
+    def samples(self) -> int:
+        """Number of the last sample; the first, at the start, is 0."""
+        return max(1, round(self._duration * self._record.series_rate))
+
+    def run(self, interrupt: Interrupt, last: int | None = None, tell: Tell = lambda _: False) -> None:
+        """Take samples until the end, or until that of number `last`.
+
+        `tell` gets what was observed at each sample; where it returns true, this stops there. On an interrupt, saves
+        everything and raises KeyboardInterrupt.
+        """
         if not self.runs:
             return
-        rate = self._record.series_rate
+        rate, last = self._record.series_rate, self.samples if last is None else min(last, self.samples)
         steps = round(1.0 / (rate * self._simulation.dt))
-        samples = max(1, round(self._duration * rate))
         a_frame = max(1, round(rate / self._record.picture_rate))
         cost = self._duration * sum(work(run.scene) for run in self.runs)
-        self.progress.start("running", self._duration, cost)
+        self.progress.start("running", last / rate, cost)
         self._counted = time.perf_counter()
-        for k in range(self._recorders[0].rows[0], samples + 1):
+        for k in range(self._recorders[0].rows[0], last + 1):
             rows = self._reach(k * steps, partial(self._pause, interrupt))
             if not self.runs:
                 break
@@ -192,6 +149,8 @@ class Batch:
             self._count_cost()
             self.progress.reach(self._simulation.time)
             self._end_lost(rows, k % a_frame == 0)
+            if tell(rows):
+                break
         self.progress.finish()
 
     def save(self) -> None:

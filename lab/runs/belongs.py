@@ -10,7 +10,7 @@ from lab.base.errors import LabError, Unusable
 from lab.preset.schema import Preset
 from lab.recording import FILE_NAME, open_recording
 from lab.runs.alike import alike, apart
-from lab.runs.batch import Run
+from lab.runs.run import Run
 
 TOLERANCE = 1e-9  # relative; processors may round the sizes of the grains differently
 

@@ -21,10 +21,11 @@ from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
 from lab.recording.xdmf import write_xdmf
 from lab.report.summary import terminal_summary, write_summary
-from lab.runs.batch import Run, prepare, run_batch
+from lab.runs.batch import run_batch
 from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import FILE_NAME as CHECKPOINT
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from lab.runs.run import Run, prepare
 from solvers.machine.runtime import available_cores
 
 RENDERS = Path("renders")
@@ -82,6 +83,8 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
     folder = Path(folder)
     with open_recording(folder) as recording:
         loaded, complete = recorded_preset(recording), recording.complete
+        if not complete:
+            check_untouched(recording)
         rows, changed = recording.series.rows, recording.versions != versions()
         told = complete and reported(recording)
     if told:
@@ -109,6 +112,14 @@ def recorded_preset(recording: Recording) -> LoadedPreset:
     except ValueError as error:
         raise Unusable(f"{recording.path} has no preset that this version can run: start the run again.") from error
     return LoadedPreset(recording.name, recording.given, resolved)
+
+
+def check_untouched(recording: Recording) -> None:
+    """Raise LabError for a recording of a run that the user has changed as it ran: no checkpoint keeps that."""
+    if recording.steering:
+        raise LabError(
+            f"{recording.folder}: this run was changed while it ran, which no checkpoint keeps: begin it again."
+        )
 
 
 def report(

@@ -34,7 +34,8 @@ from lab.preset.find import LoadedPreset
 from lab.preset.recorded import from_table, to_table
 from lab.preset.units import quoted
 from lab.recording import versions
-from lab.runs.batch import Run, prepare, run_batch
+from lab.runs.batch import run_batch
+from lab.runs.run import Run, prepare
 from lab.runs.runner import report
 from solvers.machine.runtime import available_cores, choose_arch
 

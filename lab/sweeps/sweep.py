@@ -17,9 +17,10 @@ from lab.base.progress import Progress
 from lab.base.turn import in_turn
 from lab.recording import FILE_NAME as RECORDING
 from lab.recording import open_recording
-from lab.runs.batch import Run, prepare, run_batch
+from lab.runs.batch import run_batch
 from lab.runs.belongs import check_asked, check_belongs
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from lab.runs.run import Run, prepare
 from lab.runs.runner import RENDERS, hint, report, reported
 from lab.sweeps.cluster import Errand, fetch
 from lab.sweeps.grid import FILE_NAME, Sweep, define_sweep, read_sweep

@@ -20,7 +20,7 @@ from lab.paint.water.pool import Pool
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.recording import Outlines
-from lab.runs.batch import outlines_of
+from lab.runs.run import outlines_of
 from lab.view.live import LiveFrame
 from solvers.grains.pressing import Pressing
 from solvers.ship.hydrostatics import righting_levers

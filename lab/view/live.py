@@ -23,8 +23,8 @@ from lab.preset.sections.motion import Motion
 from lab.preset.sections.water.liquid import sound_speed
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.recording import WAVES, Recorder
-from lab.runs.batch import Run
 from lab.runs.beds import settled, settling
+from lab.runs.run import Run
 from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
 from lab.view.panel.sea_controls import sea_controls_of
 from lab.view.panel.steering import Steering

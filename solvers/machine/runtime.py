@@ -230,6 +230,11 @@ def states() -> int:
     return len(_live)
 
 
+def is_live(state) -> bool:
+    """Whether a registered state still has its memory."""
+    return state in _live
+
+
 def let_go(state) -> bool:
     """Unregister a state; returns whether its memory is still allocated, since Taichi was not restarted."""
     held = state in _live

@@ -12,8 +12,17 @@ import pytest
 import cargolab
 
 ROOT = Path(__file__).parents[2]
+# Frozen, too: what these have
+METHODS = {
+    "Preset": {"name", "title", "text", "values", "quantity", "change", "changed", "schema", "keys", "cost", "explain",
+               "run", "sweep", "save"},
+    "Simulation": {"resume", "folder", "preset", "time", "duration", "ended", "now", "run", "every", "stop", "set",
+                   "save", "restore", "report", "close"},
+}  # fmt: skip
 # Frozen: a name or a parameter here is in users' scripts. Adding is fine; taking away breaks them.
 NAMES = {
+    "Preset": ("of", "overrides"),
+    "Simulation": ("preset", "out", "repeats", "quiet", "overrides"),
     "calibrate": ("preset", "target", "vary", "out", "repeats", "quiet", "cluster", "overrides"),
     "explain": ("preset", "overrides"),
     "flood": ("case", "out", "video", "overrides"),
@@ -35,9 +44,11 @@ def python(*words: str, folder: Path, path: tuple[Path, ...] = (ROOT,)) -> subpr
 
 
 def test_the_public_names_and_their_parameters_stay():
-    assert sorted([*NAMES, "__version__"]) == cargolab.__all__ == dir(cargolab)
+    assert sorted([*NAMES, "Error", "__version__"]) == cargolab.__all__ == dir(cargolab)
     assert {name: tuple(inspect.signature(getattr(cargolab, name)).parameters) for name in NAMES} == NAMES
     assert all(getattr(cargolab, name).__doc__ for name in NAMES)
+    assert all(names <= set(dir(getattr(cargolab, kind))) for kind, names in METHODS.items())
+    assert issubclass(cargolab.Error, Exception)
     with pytest.raises(AttributeError, match=r"cargolab has no runn; it has .*\brun\b"):
         cargolab.runn  # noqa: B018
     assert (Path(cargolab.__file__).parent / "py.typed").exists()

@@ -31,8 +31,8 @@ from lab.preset.formats import OldFormat
 from lab.preset.schema import Preset
 from lab.preset.units import NUMBER
 from lab.recording import Recorder
-from lab.runs.batch import prepare
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
+from lab.runs.run import prepare
 from lab.sweeps import grid
 from lab.sweeps import sweep as sweeps
 from tests.oracles.presets import MATERIAL

@@ -163,7 +163,7 @@ def test_more_beds_than_fit_into_memory_are_refused_at_once(small_machine, ask, 
 def test_the_number_of_beds_that_fit_is_accepted(small_machine, monkeypatch):
     overrides = {"grains.depth": False, "grains.count": 90, "run.repeats": 2500, "run.arch": "cpu"}
     made = []
-    monkeypatch.setattr("lab.report.explain.build", lambda preset: made.append(preset.run.repeats) or build(preset))
+    monkeypatch.setattr("lab.report.cost.build", lambda preset: made.append(preset.run.repeats) or build(preset))
     text = explain(load("tilting/quick", overrides))
     assert made == [1]
     assert "2500, seeds 1 to 2500" in text and "90 in each" in text and "in the first" in text

@@ -20,9 +20,9 @@ from lab.preset.schema import Preset
 from lab.preset.sections.shapes import ShapeClass
 from lab.recording import Recorder, open_recording
 from lab.report.explain import explain
-from lab.runs.batch import prepare
 from lab.runs.bed_key import bed_key
 from lab.runs.beds import settling
+from lab.runs.run import prepare
 from lab.runs.runner import run_preset
 from solvers.grains.shapes.contour import Contour
 from tests.oracles.presets import error_of

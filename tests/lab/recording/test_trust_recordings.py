@@ -17,8 +17,8 @@ from lab.base.trust import check_state
 from lab.preset.find import load
 from lab.recording import Outlines, Recorder, new_recording, open_recording
 from lab.recording.layout import GROUPS
-from lab.runs.batch import prepare
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
+from lab.runs.run import prepare
 from solvers.grains.shapes.contour import Contour
 from tests.lab.preset.test_malformed import SMALL, call, copied, refused
 from tests.oracles.recorded_water import DROPS, POOL, pool

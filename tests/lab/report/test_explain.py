@@ -8,7 +8,8 @@ from lab.assembly.scene import build
 from lab.preset.accuracy import LEVELS
 from lab.preset.find import load
 from lab.report import water
-from lab.report.explain import cost_in_seconds, explain
+from lab.report.cost import cost_in_seconds
+from lab.report.explain import explain
 from solvers.simulation import Simulation
 
 HOLD = "space/sloshing"

@@ -23,8 +23,9 @@ from lab.base.progress import Progress
 from lab.cli import main
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
-from lab.runs.batch import Batch, prepare
+from lab.runs.batch import Batch
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
+from lab.runs.run import prepare
 from lab.runs.runner import hint, resume_run, run_preset
 from tests.oracles.synthetic import frame, recorder, sample
 from tests.oracles.tampering import flipped

@@ -12,7 +12,7 @@ from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.recording import open_recording
 from lab.report.explain import explain
-from lab.runs.batch import prepare
+from lab.runs.run import prepare
 from lab.runs.runner import run_preset
 from lab.sweeps.dry_run import available_measures
 from solvers.machine.errors import BadState
@@ -100,7 +100,7 @@ def test_a_world_settles_alone_as_with_other_worlds():
     ],
 )
 def test_a_run_reports_its_number_of_threads(run, company, threads, tmp_path, monkeypatch):
-    monkeypatch.setattr("lab.runs.batch.available_cores", lambda: 2)
+    monkeypatch.setattr("lab.runs.run.available_cores", lambda: 2)
     ready = prepare(load("tilting/quick", SMALL | {"run": run | {"arch": "cpu"}}), tmp_path)
     assert ready.device(company)["threads"] == threads
 

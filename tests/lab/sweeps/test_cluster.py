@@ -22,8 +22,8 @@ import pytest
 from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.recording import versions
-from lab.runs.batch import prepare
 from lab.runs.checkpoint import Checkpoint
+from lab.runs.run import prepare
 from lab.studies import reproduce as package
 from lab.studies.reproduce import runs, workers
 from lab.studies.reproduce.experiment import Experiment

@@ -146,7 +146,7 @@ def test_the_grid_has_every_combination_and_the_last_key_changes_fastest():
 
 def test_points_share_batches_as_far_as_scenes_and_machine_allow(monkeypatch):
     monkeypatch.setattr("lab.sweeps.sweep.available_cores", lambda: 2)
-    monkeypatch.setattr("lab.runs.batch.available_cores", lambda: 2)
+    monkeypatch.setattr("lab.runs.run.available_cores", lambda: 2)
 
     def plan(axes, **settings):
         return list(_plan(define_sweep("tilting/quick", axes, {"run.repeats": 2, "run.arch": "cpu", **settings})))

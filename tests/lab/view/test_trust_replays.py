@@ -11,7 +11,7 @@ import pytest
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
 from lab.recording.xdmf import write_xdmf
-from lab.runs.batch import prepare
+from lab.runs.run import prepare
 from lab.view.live import steerable
 from tests.lab.preset.test_malformed import SMALL, call, copied, refused
 from tests.lab.recording.test_trust_recordings import sound  # noqa: F401 (a fixture)
