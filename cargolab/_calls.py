@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cargolab._plugins import colour, law, measure, plugin, quantity
 from cargolab._preset import Preset
 from cargolab._simulation import Simulation
 from lab import __version__, dotted, resume, run, sweep
@@ -22,11 +23,16 @@ __all__ = [
     "Simulation",
     "__version__",
     "calibrate",
+    "colour",
     "explain",
     "flood",
     "hull",
+    "law",
+    "measure",
     "open",
+    "plugin",
     "presets",
+    "quantity",
     "render",
     "resume",
     "run",

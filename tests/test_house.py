@@ -34,10 +34,10 @@ FLOORS = {  # from the ground up: a room imports those before it
         "simulation",
     ),
     "lab": (
-        *("base", "preset", "assembly", "naval", "recording", "measures", "paint", "report"),
+        *("base", "plugins", "preset", "assembly", "naval", "recording", "measures", "paint", "report"),
         *("runs", "sweeps", "view", "studies", "cli"),
     ),
-    "cargolab": ("_hidden", "_preset", "_simulation", "_calls"),
+    "cargolab": ("_hidden", "_preset", "_simulation", "_plugins", "_calls"),
     "benchmarks": (
         *("aside", "devices", "remembered", "bench", "peers", "speed", "accuracy", "stability", "water"),
         *("outlines", "gpu"),

@@ -7,6 +7,7 @@ from lab.cli.benches import bench
 from lab.cli.errors import Commands
 from lab.cli.flooding import cross_flooding, flood
 from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
+from lab.cli.options import plugins_option
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import schema
 from lab.cli.runs import bed, explain, resume, run
@@ -58,3 +59,6 @@ for command in (
     view,
 ):
     main.add_command(command)
+
+for command in (bed, beside, calibrate, explain, poster, render, report, resume, run, sheet, sweep, view):
+    plugins_option(command)

@@ -13,6 +13,7 @@ import click
 from lab.base.errors import LabError, os_sentence
 from lab.base.interrupt import exit_code, handling_signals
 from lab.base.text import one_line
+from lab.plugins.loading import asking
 from lab.preset.formats import OldFormat
 from solvers.machine.errors import BadState, Unavailable
 
@@ -24,6 +25,8 @@ class Commands(click.Group):
         """Run a command line and exit."""
         # Matrices are small here, and numpy's threads, which spin while they wait, would take cores from the solver.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        if sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty():
+            asking[:] = [_ask]
         try:
             with handling_signals(), warnings.catch_warnings():
                 warnings.showwarning = _warn
@@ -45,6 +48,11 @@ class Commands(click.Group):
         except MemoryError:
             code = _say("there is not enough memory for this: ask for fewer grains or repeats, or free some.", 2)
         sys.exit(code if isinstance(code, int) else 0)
+
+
+def _ask(where: str) -> bool:
+    """Whether the user allows a plug-in to run."""
+    return click.confirm(f"The preset names {where}, code that would run with your rights. Run it?", err=True)
 
 
 def _warn(message: Warning, category: type[Warning], *where: object) -> None:

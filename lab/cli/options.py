@@ -112,6 +112,22 @@ class ColourOption(click.Option):
         return super().get_help_record(context)
 
 
+def _allow(_context, _option, given: bool) -> None:
+    if given:
+        from lab.plugins.loading import allow
+
+        allow()
+
+
+plugins_option = click.option(
+    "--plugins",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_allow,
+    help="Run the code of the plug-ins that the preset names.",
+)
+
 page_option = out_option("of the page and its figures", default=Path("renders/bench"))
 page_only_option = click.option(
     "--page", "page_only", is_flag=True, help="Run nothing: write the page from what is kept."

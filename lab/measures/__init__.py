@@ -39,6 +39,7 @@ from lab.measures import (
     level_crests,
     liquid_mass,
     onset,
+    own,
     packing,
     pore_pressure,
     run_up,
@@ -126,7 +127,8 @@ def measure_all(recording: Recording) -> Measures:
     return found
 
 
-def applicable(recording: Recording) -> list[ModuleType]:
+def applicable(recording: Recording) -> list[ModuleType | own.OwnMeasure]:
     """The measures that can be made on this recording, in their order."""
     held = ("", *recording.preset.matters)
-    return [measure for measure in MEASURES if getattr(measure, "OF", "") in held and measure.applies(recording)]
+    known = (*MEASURES, *own.OWN.values())
+    return [measure for measure in known if getattr(measure, "OF", "") in held and measure.applies(recording)]

@@ -21,6 +21,7 @@ from lab.base import toml
 from lab.base.data import PRESETS
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
+from lab.plugins.loading import admit
 from lab.preset import formats
 from lab.preset.fields import NAME, marked
 from lab.preset.kept import read as kept
@@ -36,6 +37,7 @@ LARGEST_FILE = 1_000_000  # bytes
 # a.b.c…, grow with the square, and a key is within one line.
 MOST_DOTS = 10_000_000
 
+PLUGINS = "plugins"  # the key that names code which a preset needs
 QUICK = "-quick"  # suffix of a preset's name: its quick variant
 # Keys that describe one experiment and are not inherited by presets based on it.
 OWN_KEYS = ("title", "source", "reports", "based_on")
@@ -136,12 +138,14 @@ def _merged(name_or_path: str | Path, overrides: Mapping | None) -> tuple[Source
     try:
         layers = _layers(source)
         formats.upgrade([layer.table for layer in layers], source.shown, changes := nested(overrides or {}))
+        asked = reduce(merged, (layer.located([PLUGINS]) for layer in (*layers, Layer(changes, Path())))).get(PLUGINS)
+        admit(asked if isinstance(asked, list) else [])
         keys = kept.keys()
         variant = _quick_variant(source, layers, marked(keys, "cheap"))
         if quick and not variant:
             raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
         layers = [*layers, Layer(variant if quick else {}, Path()), Layer(changes, Path())]
-        table = reduce(merged, (layer.located(marked(keys, "columns")) for layer in layers))
+        table = reduce(merged, (layer.located([PLUGINS, *marked(keys, "columns")]) for layer in layers))
         if keys is not kept.loaded():
             check_keys(keys, table)
             read(keys, table)

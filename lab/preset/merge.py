@@ -78,6 +78,8 @@ class Layer:
     def _located_value(self, value: object, rest: str) -> object:
         if rest and isinstance(value, Mapping):
             return self._with_full_path(dict(value), rest)
+        if isinstance(value, list) and not rest:
+            return [self._located_value(one, "") if str(one).endswith(".py") else one for one in value]
         if not isinstance(value, str) or rest not in ("", FILE):
             return value
         path = _measured(value) if value.startswith(PREFIX) else os.path.abspath(self.folder / value)

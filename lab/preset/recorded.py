@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from lab.base.errors import LabError
 from lab.base.toml import BARE_KEY
+from lab.plugins.loading import admit
 from lab.preset import formats
 from lab.preset.fields import ANY, Table, Taken, taken_of
 from lab.preset.reader import BOUND, check_interval
@@ -31,11 +32,16 @@ def to_table(preset: "Preset") -> dict:
 
 
 def from_table(table: object) -> "Preset":
-    """The preset of such a table, also of one from an earlier version. Raises ValueError where it is none."""
+    """The preset of such a table, also of one from an earlier version.
+
+    Raises ValueError where it is none, LabError where its plug-ins may not run or are gone.
+    """
     from pydantic import ValidationError  # slow to load, as the schema is; a recording is opened without both
 
     try:
         kept = formats.recorded(table) if isinstance(table, Mapping) else table
+        if isinstance(kept, Mapping):
+            admit(kept.get("plugins") or ())
         return _model().validate_json(json.dumps(kept), strict=True)
     except ValidationError as error:
         first = error.errors()[0]

@@ -80,6 +80,7 @@ class Preset(WithBodies):
     reports: Annotated[str, Doc("What the source reports of it.")] = ""
     based_on: Annotated[str, Doc("Name or path of the preset whose keys this one changes.")] = ""
     quick: Annotated[str, Doc("How a quick variant differs from its preset.")] = ""
+    plugins: Annotated[tuple[str, ...], Doc("Files or names of plug-ins: laws, measures … of one's own.")] = ()
     wall: Annotated[Wall, Of("grains"), Doc("What of the walls' material is not as that of the grains.")] = field(
         default_factory=Wall
     )
@@ -102,9 +103,7 @@ class Preset(WithBodies):
         field(default_factory=dict)
     )
     ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
-    tanks: Annotated[dict[str, FurtherTank], Doc("Further tanks of the ship, beside [tank].")] = field(
-        default_factory=dict
-    )
+    tanks: Annotated[dict[str, FurtherTank], Doc("Further tanks of the ship.")] = field(default_factory=dict)
     inflow: Annotated[dict[str, Inlet], Of("water"), Doc("Openings by which water enters.")] = field(
         default_factory=dict
     )

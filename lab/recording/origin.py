@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lab import __version__
+from lab.plugins.loading import hashes
 from lab.recording.layout import fixed_text
 
 if TYPE_CHECKING:
@@ -18,8 +19,9 @@ PACKAGES = ("taichi", "numpy", "scipy", "h5py")
 
 
 def versions() -> dict[str, str]:
-    """Versions of the lab, of Python and of the packages that the results depend on, by name."""
-    return {"cargo-shift-lab": __version__, "python": platform.python_version(), **_of_packages()}
+    """Versions of the lab, of Python, of the packages that the results depend on, and hashes of plug-ins, by name."""
+    plugged = {f"plug-in {name}": digest for name, digest in hashes.items()}
+    return {"cargo-shift-lab": __version__, "python": platform.python_version(), **_of_packages(), **plugged}
 
 
 @cache

@@ -37,6 +37,7 @@ from lab.recording.layout import (
 from lab.recording.opening import create, end_of, open_to_add
 from lab.recording.origin import reference_points, this_machine, versions
 from lab.recording.outlines import GROUP, Outlines, outline_tables
+from lab.recording.own import with_own
 
 BUFFER_BYTES = 2**25  # most that is kept in memory before it is written
 FLUSH_EVERY = 2.0  # wall-clock time (s) between flushes, which a killed run may lose
@@ -74,8 +75,8 @@ def new_recording(
     no wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None if all
     are discs; machine: device and threads, added to the data found here; steered: whether the user steers the run.
 
-    The file gets its name only when it is complete, so it is readable from then on. Raises LabError if the folder
-    cannot be written, is full, or already holds a recording.
+    The file gets its name only when it is complete. Raises LabError if the folder cannot be written, is full, or
+    already holds a recording.
     """
     path = Path(folder) / FILE_NAME
     radius, parts, tables = np.asarray(radius, dtype=float), parts or {}, outline_tables(shapes) if shapes else {}
@@ -102,8 +103,7 @@ def new_recording(
             store(file, "preset/resolved", fixed_text(json.dumps(recorded.to_table(resolved)))[None])
             if radius.size:
                 store(file, "grains/radius", radius)
-                kind = np.zeros(radius.shape) if kind is None else kind
-                store(file, "grains/kind", np.asarray(kind, dtype="u1"))
+                store(file, "grains/kind", np.asarray(np.zeros(radius.shape) if kind is None else kind, dtype="u1"))
             for phase, of_phase in {"water": volume, "air": air, "bulk": bulk}.items():
                 if of_phase is not None and of_phase.size:
                     store(file, f"{phase}/volume", np.asarray(of_phase, dtype=float))
@@ -115,7 +115,8 @@ def new_recording(
                 store(file, f"{PARTS}/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
-            create_tables(file, tables_of(resolved, steered), names_of(resolved, parts), radius, volume, air, bulk)
+            names = names_of(resolved, parts)
+            create_tables(file, with_own(tables_of(resolved, steered)), names, radius, volume, air, bulk)
     return path
 
 

@@ -20,6 +20,7 @@ from lab.base.progress import Progress
 from lab.base.trust import check_state
 from lab.preset.units import show
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Recorder
+from lab.recording.own import filled
 from lab.recording.ship_end import VERBS
 from lab.runs.beds import settled, settling
 from lab.runs.checkpoint import Checkpoint, remove_checkpoint
@@ -182,7 +183,7 @@ class Batch:
                 while self._simulation.steps < step:
                     self._simulation.advance(min(a_call, step - self._simulation.steps))
                     pause()
-                return self._simulation.observe()
+                return filled(self._simulation, self._simulation.observe())
             except BadState as error:
                 self._leave_out(error)
         return {}

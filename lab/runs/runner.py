@@ -16,6 +16,7 @@ from lab.base.turn import in_turn
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.paint.beside import Beside, second_process
+from lab.plugins.loading import local
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
@@ -199,7 +200,8 @@ def _complete(
 
 def _second_process(video: bool, given: Beside | None = None) -> AbstractContextManager[Beside | None]:
     """The process that films a run: the given one, else a new one; None without a video, or on a single core."""
-    return second_process(available_cores()) if video and given is None else nullcontext(given)
+    wanted = video and given is None and not local()  # what a notebook defines, another process does not know
+    return second_process(available_cores()) if wanted else nullcontext(given)
 
 
 def _film(folder: Path, progress: Progress, beside: Beside | None) -> Path:

@@ -23,6 +23,7 @@ from lab.preset.sections.motion import Motion
 from lab.preset.sections.water.liquid import sound_speed
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.recording import WAVES, Recorder
+from lab.recording.own import filled
 from lab.runs.beds import settled, settling
 from lab.runs.run import Run
 from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
@@ -161,7 +162,7 @@ class Live:
 
     def _record(self) -> dict[str, np.ndarray]:
         """Observe, add a row to the series and, if one is due, a frame; returns the observation."""
-        rows, now = self.simulation.observe(), self.time
+        rows, now = filled(self.simulation, self.simulation.observe()), self.time
         self.recorder.sample({"time": now, **{name: rows[name] for name in self.recorder.series if name != "time"}})
         if self.pieces % self._a_frame == 0:
             more = {**self.simulation.placed(), **self._waves(), **self.simulation.snapshot()}

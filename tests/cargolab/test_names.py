@@ -21,6 +21,11 @@ METHODS = {
 }  # fmt: skip
 # Frozen: a name or a parameter here is in users' scripts. Adding is fine; taking away breaks them.
 NAMES = {
+    "colour": ("function", "label", "name"),
+    "law": ("kind", "name"),
+    "measure": ("function", "unit", "of", "when", "name"),
+    "plugin": ("path",),
+    "quantity": ("function", "unit", "label", "name"),
     "Preset": ("of", "overrides"),
     "Simulation": ("preset", "out", "repeats", "quiet", "overrides"),
     "calibrate": ("preset", "target", "vary", "out", "repeats", "quiet", "cluster", "overrides"),

@@ -15,7 +15,7 @@ def content(table: object) -> Content:
     """The content of a recorded preset. Raises ValueError where it is none, as far as types and words tell."""
     try:
         kept = formats.recorded(table) if isinstance(table, Mapping) else table
-        _check(Taken(keys()), kept, "")
+        _check(Taken(keys()), _without_own_words(kept), "")
     except (RecursionError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(str(error)) from error
     gauges = {name: Gauge(gauge.get("kind", KINDS_OF_GAUGES[0])) for name, gauge in kept.get("gauges", {}).items()}
@@ -40,6 +40,13 @@ def content(table: object) -> Content:
     room = bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ()))
     soaks = has["water"] and has["grains"] and _soaks(kept.get("parts", {}), grains.get("room"))
     return Content(matters, *own, *room, repeats, axes, faces, wet, soaks)
+
+
+def _without_own_words(kept: Mapping) -> Mapping:
+    """The table; of one with plug-ins, whose laws and colours only they know, without these."""
+    if not kept.get("plugins"):
+        return kept
+    return {**kept, "contact": {}, "video": {**kept.get("video", {}), "colour": None}}
 
 
 def _soaks(parts: Mapping, name: str | None) -> bool:
