@@ -4,6 +4,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
+from lab.preset.sections.bulk.beds import beds_of
 from solvers.bulk.given import Bulk
 from solvers.bulk.grid import grid_of
 from solvers.bulk.start import at_rest
@@ -13,14 +14,16 @@ from solvers.tank.tank import Tank
 
 def bulk_of(preset: Preset) -> Bulk:
     """The bulk of a scene, the same in all repeats. Raises LabError if it is too thin for its cells."""
-    corners, gravity, bulk = np.array(preset.tank.corners), preset.run.gravity, preset.bulk
-    grid = grid_of([Tank(corners, preset.thickness)], bulk.spacing)
-    material, filled = bulk.material(corners, gravity), bulk.filled(corners)
+    gravity, bulk, beds = preset.run.gravity, preset.bulk, beds_of(preset)
+    grid = grid_of([Tank(bed.corners, preset.thickness) for bed in beds], bulk.spacing)
+    material = bulk.material(max(bed.high for bed in beds), gravity)
+    how = bulk.density, material.bulk_modulus, material.friction, gravity
     try:
-        points = at_rest(filled, grid, 0, bulk.density, material.bulk_modulus, material.friction, gravity)
+        points = [at_rest(bed.filled, grid, number, *how) for number, bed in enumerate(beds)]
     except ValueError as error:
         raise LabError(f"bulk.spacing: {error}; make it smaller.") from None
-    return Bulk(np.tile(points, (preset.run.repeats, 1)), material, grid, (len(points),))
+    whole = np.tile(np.concatenate(points), (preset.run.repeats, 1))
+    return Bulk(whole, material, grid, tuple(map(len, points)))
 
 
 def points_of(scene: Scene) -> np.ndarray | None:

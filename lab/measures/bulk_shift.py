@@ -1,6 +1,8 @@
 """Where bulk went: its centre of mass in the tank's frame, and what it lost on the way.
 
-bulk_shift: displacement of the centre sideways from the start to the last sample, in % of the tank's width;
+bulk_shift: displacement of the centre sideways from the start to the last sample, in % of the tank's width; of several
+tanks that of all bulk, each tank by its length, in % of the width of all;
+bulk_shift_NAME: of several tanks that in one alone, in % of its own width, up to the last picture;
 bulk_largest_shift: the largest at any time, as an amount;
 bulk_half_range: of a tank driven at one frequency half the range of the shift, the mean of the last PERIODS periods;
 bulk_rise: how much higher than at the start the centre lies at the end (mm), in the tank's frame. Of a bed that is
@@ -24,6 +26,7 @@ from lab.measures.driven_load import between
 from lab.measures.loose import loose_mass
 from lab.measures.motion import driving
 from lab.measures.value import Value, over_worlds
+from lab.preset.sections.bulk.beds import beds_of, slices, width_of
 from lab.recording import Recording
 from solvers.machine.quantity import ROLL
 
@@ -45,10 +48,11 @@ def measure(recording: Recording) -> dict[str, Value]:
     moved, losses = shift(recording), series["bulk_losses"][-1]
     height = 1e3 * (series["centre_of_mass"][-1, :, 1] - series["centre_of_mass"][0, :, 1])
     taken = losses[:, :2].sum(axis=1)
-    least = LITTLE * weight(recording) * float(np.ptp(recording.outline[:, 0]))
+    least = LITTLE * weight(recording) * width(recording)
     share = np.where(taken > least, -100.0 * losses[:, 3] / np.maximum(taken, least), np.nan)
     found = {
         "bulk_shift": over_worlds(moved[-1], "%", note="of the tank's width"),
+        **_by_tanks(recording),
         "bulk_largest_shift": over_worlds(np.abs(moved).max(axis=0), "%", note="of the tank's width"),
         "bulk_rise": over_worlds(height, "mm"),
         "bulk_carried": over_worlds(carried(recording), "1"),
@@ -63,7 +67,26 @@ def measure(recording: Recording) -> dict[str, Value]:
 def shift(recording: Recording) -> np.ndarray:
     """Displacement (T, W) of the centre sideways from the start, in % of the tank's width."""
     centre = recording.series["centre_of_mass"][..., 0]
-    return 100.0 * (centre - centre[0]) / float(np.ptp(recording.outline[:, 0]))
+    return 100.0 * (centre - centre[0]) / width(recording)
+
+
+def width(recording: Recording) -> float:
+    """The width (m) of all tanks in one."""
+    return width_of(beds_of(recording.preset))
+
+
+def _by_tanks(recording: Recording) -> dict[str, Value]:
+    """The shift in each of several tanks; nothing of one alone."""
+    beds, place = beds_of(recording.preset), recording.frames["bulk_position"]
+    if len(beds) == 1 or not len(place):
+        return {}
+    moved = np.array(place[-1][..., 0], dtype=float) - place[0][..., 0]
+    found = {}
+    for bed, own in zip(beds, slices(beds, recording.bulk_volume[0]), strict=True):
+        mass = recording.bulk_volume[:, own]
+        share = 100.0 * (mass * moved[:, own]).sum(axis=1) / np.maximum(mass.sum(axis=1), 1e-300) / width_of((bed,))
+        found[f"bulk_shift_{bed.name}"] = over_worlds(share, "%", note="of its own width, in the last picture")
+    return found
 
 
 def weight(recording: Recording) -> float:
@@ -96,11 +119,11 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     (upper,), (middle,), (lower,) = sheet.panels(heights=(3, 1, 2))
     band(upper, time, shift(recording), BLUE, "sideways")
     rise = series["centre_of_mass"][..., 1] - series["centre_of_mass"][0, :, 1]
-    band(upper, time, 100.0 * rise / float(np.ptp(recording.outline[:, 0])), VERMILION, "upwards")
+    band(upper, time, 100.0 * rise / width(recording), VERMILION, "upwards")
     upper.set_ylabel("shift of the centre of mass\n(% of the tank's width)")
     band(middle, time, 100.0 * series["bulk_sliding"], GREY)
     middle.set_ylabel("sliding\n(% of mass)")
-    losses, own = series["bulk_losses"], weight(recording) * float(np.ptp(recording.outline[:, 0]))
+    losses, own = series["bulk_losses"], weight(recording) * width(recording)
     names = (BLUE, "friction at walls"), (VERMILION, "friction within"), (GREEN, "end of contact")
     for k, (colour, name) in enumerate(names):
         band(lower, time, 100.0 * losses[..., k] / own, colour, name)

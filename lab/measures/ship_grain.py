@@ -1,8 +1,9 @@
 """How far the grain in a ship's hold has shifted, beside what the International Grain Code assumes.
 
 The cargo's centre has moved aside by s (m, in the hold) since it settled. Its volumetric heeling moment is V s, V the
-level filling of the settled bed; `assumed_moment` is that of a surface turned to 15 or 25 deg (`solvers.ship.naval`),
-without the factor for the vertical part. Both are of the whole hold, at the full scale if the preset has one.
+level filling of the settled bed, of all holds together; `assumed_moment` is that of a surface turned to 15 or 25 deg
+(`solvers.ship.naval`), in each of them, without the factor for the vertical part. Both are of the whole ship, at the
+full scale if the preset has one.
 
 shifted_moment: the mean over the last tenth of the run, positive to starboard. Error: half the difference between the
 two halves of that time. largest_shifted_moment: the largest to either side. shifted_share: `shifted_moment`, whatever
@@ -20,12 +21,13 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band, mean_label
-from lab.measures.loose import is_loose, loose_mass
+from lab.measures.loose import is_loose, mass_aboard
 from lab.measures.naval_levers import draw_levers
 from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
 from lab.naval import sheet
-from lab.naval.condition import Condition, condition
+from lab.naval.condition import Condition, condition, level_of
+from lab.preset.schema import Preset
 from lab.recording import Recording
 from solvers.machine.errors import Unavailable
 from solvers.machine.quantity import PLANE, ROLL
@@ -124,17 +126,27 @@ def _shift(path: str, _rows: int) -> Shift | None:
         centre = np.array(recording.series["centre_of_mass"], dtype=float)[..., :PLANE]
         if vessel is None or not len(centre):
             return None
-        mass = float(loose_mass(recording).mean())
+        mass = float(mass_aboard(recording).mean())
         hold = Section(recording.outline)
     try:
-        area = level_area(hold, float(centre[0, :, 1].mean()))
-        if area > FULL * hold.area:
+        level = level_of(preset) if _several(preset) else _settled(hold, float(centre[0, :, 1].mean()))
+        if level is None:
             return None
-        level = -balanced_heave(hold, Loading(area, (0.0, 0.0)), ONE, 0.0)
         found = condition(preset, vessel, level, mass)
     except (Unavailable, LabError):
         return None
     return Shift(found, (centre - centre[0]) * found.scale, found.cargo.mass / found.displacement)
+
+
+def _several(preset: Preset) -> bool:
+    """Whether there are several holds, whose centre does not tell their levels."""
+    return bool(preset.bulk and preset.tanks)
+
+
+def _settled(hold: Section, height: float) -> float | None:
+    """The level (m) of the filling whose centre is at a height (m); None in a full hold. Raises Unavailable."""
+    area = level_area(hold, height)
+    return None if area > FULL * hold.area else -balanced_heave(hold, Loading(area, (0.0, 0.0)), ONE, 0.0)
 
 
 def draw_moment(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
@@ -156,7 +168,7 @@ def draw_moment(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]
     if given.factor != 1.0:
         lines.append((given.surface, given.factor, VERMILION, "-"))
     for surface, factor, colour, style in lines:
-        size = ship.hold.volumetric_moment(ship.cargo.volume, surface) * factor
+        size = ship.moment_at(surface) * factor
         angle = f"{np.degrees(surface):.0f} deg" + (f" x {factor:.2f}" if factor != 1.0 else "")
         for side in (1.0, -1.0):
             label = f"assumed, {angle}: {size:.5g} m⁴" if side > 0.0 else None

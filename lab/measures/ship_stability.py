@@ -11,10 +11,11 @@ import numpy as np
 
 from lab.assembly.ship import flooding_angles
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, mark
-from lab.measures.loose import is_loose, loose_mass
+from lab.measures.loose import is_loose, mass_aboard
 from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
 from lab.preset.schema import Preset
+from lab.preset.sections.bulk.beds import beds_of
 from lab.preset.sections.water.tanks import outline_of
 from lab.recording import Recording
 from solvers.fluid.start.packing import below
@@ -57,15 +58,22 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
         return heel, frozen, None
     if not is_loose(recording):
         return heel, frozen, _with_level_water(recording.preset, vessel, heel)
-    cargo = float(loose_mass(recording).mean()) * recording.preset.a_metre
     repose = recording.preset.ship.repose
     try:
-        hold = Section(recording.outline)
-        area = level_area(hold, float(recording.series["centre_of_mass"][0, :, 1].mean()))
-        relaxed = relaxed_levers(load.section, loading, load.water, heel, hold, area, cargo, repose)
+        relaxed = relaxed_levers(load.section, loading, load.water, heel, _fillings(recording), repose)
     except Unavailable:
         return heel, frozen, None
     return heel, frozen, relaxed
+
+
+def _fillings(recording: Recording) -> list[tuple[Section, float, float]]:
+    """The holds of loose cargo, each with its area (m²) and mass (kg a metre of the ship). Raises Unavailable."""
+    preset = recording.preset
+    if preset.bulk and preset.tanks:
+        share = preset.bulk.density / (preset.ship.length or 1.0)
+        return [(Section(bed.corners), bed.area, share * bed.area * bed.along) for bed in beds_of(preset)]
+    hold, height = Section(recording.outline), float(recording.series["centre_of_mass"][0, :, 1].mean())
+    return [(hold, level_area(hold, height), float(mass_aboard(recording).mean()))]
 
 
 def _with_level_water(preset: Preset, vessel: Vessel, heels: np.ndarray) -> np.ndarray | None:

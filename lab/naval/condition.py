@@ -1,9 +1,10 @@
 """The condition of a preset's ship as a loading manual states it, at the full scale if the preset has one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
+from math import inf, nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,9 +13,12 @@ from lab.assembly.hull_tables import whole_form
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
 from lab.naval.free_surfaces import FreeSurface, free_surfaces
+from lab.preset.kept.content import FIRST
 from lab.preset.schema import Preset
+from lab.preset.sections.bulk.beds import beds_of
 from lab.preset.sections.naval.stability import Stability
 from lab.preset.sections.ship import Ship
+from lab.preset.sections.water.tanks import outline_of
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE, Form, Hydrostatics, prism
@@ -24,7 +28,6 @@ from solvers.ship.naval.weather import Exposed
 from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
-from solvers.tank.outline import area_below
 
 HEELS = np.radians(np.arange(-60.0, 91.0))
 
@@ -43,6 +46,15 @@ class Cargo:
         return self.volume / self.mass
 
 
+class Stowed(NamedTuple):
+    """A hold by its name in the preset, the level (m) of the grain in it, and its volume (m³)."""
+
+    name: str
+    hold: Hold
+    level: float
+    volume: float
+
+
 @dataclass(frozen=True, eq=False)
 class Condition:
     """A ship in calm water: form, displacement (t), centre of gravity (m), angles (rad) of deck edge and flooding.
@@ -52,7 +64,8 @@ class Condition:
     All lengths are `scale` times those of the preset; `gravity_height` is KG without free surfaces, whose moment (t m)
     is apart: `tanks`, as large as in the preset, are in it. G lies `aside` (m) of the middle, towards the `side` that
     she is judged on. With `lines` her form is that of offsets, else of one section all along. `repose` (rad) is the
-    cargo's. `hold` and `cargo` are None without grain.
+    cargo's. `hold` and `cargo` are None without grain; `stowed` is what each of her holds has of it, the first one's
+    included.
     """
 
     form: Form
@@ -73,6 +86,7 @@ class Condition:
     repose: float
     hold: Hold | None = None
     cargo: Cargo | None = None
+    stowed: tuple[Stowed, ...] = ()
 
     @cached_property
     def hydrostatics(self) -> Hydrostatics:
@@ -133,8 +147,12 @@ class Condition:
 
     @property
     def assumed_moment(self) -> float:
-        """Volumetric heeling moment (m⁴) of the assumed shift in the hold, without the factor for its vertical part."""
-        return self.hold.volumetric_moment(self.cargo.volume, ASSUMED[self.given.filling].surface)
+        """Volumetric heeling moment (m⁴) of the assumed shift in her holds, without the factor for the vertical."""
+        return self.moment_at(ASSUMED[self.given.filling].surface)
+
+    def moment_at(self, surface: float) -> float:
+        """Volumetric heeling moment (m⁴) of the cargo with a surface at an angle (rad) in each hold."""
+        return sum(one.hold.volumetric_moment(one.volume, surface) for one in self.stowed)
 
     @property
     def assumed_arm(self) -> float:
@@ -151,8 +169,8 @@ class Condition:
 def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: float | None = None) -> Condition:
     """The condition of a preset's ship, `vessel`, at the full scale.
 
-    level: height (m, the tank's axes) of the level filling, mass: of the grain in the slab (kg); as the preset says
-    without them. Raises LabError for a ship that cannot be judged.
+    level: height (m, the tank's axes) of the level filling of [tank], mass: of all grain in a metre of her (kg/m); as
+    the preset says without them. Raises LabError for a ship that cannot be judged.
     """
     ship, given, scale = preset.ship, preset.stability, preset.ship.scale or 1.0
     load = vessel.ship.load
@@ -160,7 +178,7 @@ def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: 
     try:
         form = _form(ship, scale)
         angles = flooding_angles(ship, vessel)
-        hold, cargo = _stowed(preset, form, scale, level, mass)
+        stowed, cargo = _stowed(preset, scale, level, mass)
     except Unavailable as error:
         raise LabError(f"stability: {error}") from None
     keel = float(ship.corners[:, 1].min())
@@ -183,8 +201,9 @@ def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: 
         ship.offsets is not None,
         given,
         ship.repose,
-        hold,
+        stowed[0].hold if stowed else None,
         cargo,
+        stowed,
     )
 
 
@@ -202,24 +221,33 @@ def _angle(found: float | None, points: tuple) -> float | None:
     return (inf if found is None else found) if points else None
 
 
-def _stowed(preset: Preset, form: Form, scale: float, level: float | None, mass: float | None):
-    """The hold, its heights from the keel, and the grain in it; None and None without grain."""
+def _stowed(
+    preset: Preset, scale: float, level: float | None, mass: float | None
+) -> tuple[tuple[Stowed, ...], Cargo | None]:
+    """The holds with their levels and volumes, heights from the keel, and the grain in them; none without grain."""
     if preset.grains is None and preset.bulk is None:
-        return None, None
-    keel = float(preset.ship.corners[:, 1].min())
-    shift = np.array(preset.ship.hold) - [0.0, keel]
-    hold = Hold(
-        Section((np.array(preset.tank.corners) + shift) * scale),
-        (preset.tank.length or preset.ship.length or 1.0) * scale,
-    )
-    level = level_of(preset) if level is None else level
-    if level is None:
-        return None, None
-    mass = slab_mass(preset) if mass is None else mass
-    filling = hold.filled_to((level + shift[1]) * scale)
-    volume = min(filling.volume, hold.volume * (1.0 - 1e-9))
-    whole = mass / preset.thickness * scale**2 * hold.length / TONNE
-    return hold, Cargo(filling.level, volume, whole)
+        return (), None
+    ship = preset.ship
+    shift, whole = np.array(ship.hold) - [0.0, float(ship.corners[:, 1].min())], ship.length or 1.0
+    found = []
+    for name, outline, long, height in _holds(preset, level):
+        hold = Hold(Section((outline + shift) * scale), (long or whole) * scale)
+        if height is None:
+            return (Stowed(name, hold, nan, 0.0),), None
+        filling = hold.filled_to((height + shift[1]) * scale)
+        found.append(Stowed(name, hold, filling.level, min(filling.volume, hold.volume * (1.0 - 1e-9))))
+    mass = mass_of(preset) if mass is None else mass
+    volume = sum(one.volume for one in found)
+    return tuple(found), Cargo(found[0].level, volume, mass * whole * scale**3 / TONNE)
+
+
+def _holds(preset: Preset, level: float | None) -> Iterator[tuple[str, np.ndarray, float | None, float | None]]:
+    """Name, outline (m, 2) m, length (m) and level (m) of each hold, heights as those of [tank]."""
+    first = level_of(preset) if level is None else level
+    yield FIRST, np.array(preset.tank.corners), preset.tank.length, first
+    for name, tank in preset.tanks.items() if preset.bulk else ():
+        outline = outline_of(preset, tank)
+        yield name, outline, tank.length, float(outline[:, 1].min()) + tank.depth
 
 
 def level_of(preset: Preset) -> float | None:
@@ -228,9 +256,9 @@ def level_of(preset: Preset) -> float | None:
     return None if depth is None else float(np.array(preset.tank.corners)[:, 1].min()) + depth
 
 
-def slab_mass(preset: Preset) -> float:
-    """Mass (kg) of the preset's grains, spheres of the mean cube of their diameters, or of its bulk."""
+def mass_of(preset: Preset) -> float:
+    """Mass (kg) a metre of the ship of the preset's grains, spheres of the mean cube of their diameters, or bulk."""
     if preset.bulk:
-        return preset.bulk.density * preset.thickness * area_below(np.array(preset.tank.corners), preset.bulk.depth)
+        return preset.bulk.density * sum(bed.area * bed.along for bed in beds_of(preset)) / (preset.ship.length or 1.0)
     mean_cube = preset.mean_diameter**3 * (1.0 + preset.grains.spread**2)  # of a uniform spread
-    return grain_count(preset) * np.pi / 6.0 * preset.material.density * mean_cube
+    return preset.a_metre * grain_count(preset) * np.pi / 6.0 * preset.material.density * mean_cube

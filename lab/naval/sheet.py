@@ -145,11 +145,17 @@ def _lolled(condition: Condition) -> list[tuple[str, str]]:
 
 def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:
     """Rows on the hold and the grain in it."""
-    hold, given, assumed = condition.hold, condition.given, grain_code.ASSUMED[condition.given.filling]
+    given, assumed = condition.given, grain_code.ASSUMED[condition.given.filling]
     stows = f"{cargo.volume:.5g} m3, {cargo.mass:.5g} t; stowage factor {condition.stowage:.3f} m3/t"
     angle, moment = np.degrees(assumed.surface), condition.assumed_moment
     return [
-        ("hold", f"{hold.length:.4g} m long, {hold.volume:.5g} m3, {given.filling} to {cargo.level:.3f} m"),
+        *(
+            (
+                "hold" if one.hold is condition.hold else f"hold {one.name}",
+                f"{one.hold.length:.4g} m long, {one.hold.volume:.5g} m3, {given.filling} to {one.level:.3f} m",
+            )
+            for one in condition.stowed
+        ),
         ("grain", stows + (f" (the bed's {cargo.stowage:.3f})" if given.stowage else "")),
         (
             "assumed shift",

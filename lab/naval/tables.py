@@ -124,6 +124,8 @@ def all_of(condition: Condition, rows: Sequence[Row], lying=None) -> dict[str, T
     }
     if condition.hold is not None:
         found["hold"] = hold(condition.hold)
+    for further in condition.stowed[1:]:
+        found[f"hold-{further.name}"] = hold(further.hold)
     return found
 
 

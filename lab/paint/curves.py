@@ -207,7 +207,7 @@ def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
 
     def shift(bed: Bed) -> np.ndarray:
         centre = bed.footage.centre_of_mass[:, bed.world, axis]
-        unit = 0.01 * float(np.ptp(bed.footage.outline[:, 0])) if of_bulk else bed.diameter
+        unit = 0.01 * bed.footage.breadth if of_bulk else bed.diameter
         return (centre - centre[0]) / unit
 
     return f"shift Δ{'yz'[axis]} ({'% of width' if of_bulk else 'diameters'})", shift

@@ -93,7 +93,7 @@ class Preset(WithBodies):
     contact: Annotated[Contact, Of("grains"), Doc("The contact laws.")] = field(default_factory=Contact)
     water: Annotated[Water | None, Doc("The water in the tank.")] = None
     air: Annotated[Air | None, Of("water"), Doc("The air over the water, in a closed tank; nothing without it.")] = None
-    bulk: Annotated[Bulk | None, Doc("Loose cargo in the tank as a continuum, in place of grains.")] = None
+    bulk: Annotated[Bulk | None, Doc("Loose cargo in the tanks as a continuum, in place of grains.")] = None
     gauges: Annotated[dict[str, Gauge], Of("water"), Doc("Gauges of the water's pressure and level.")] = field(
         default_factory=dict
     )

@@ -18,9 +18,13 @@ FULL = 0.999  # of its friction that a point calls on when it slides
 
 @ti.data_oriented
 class Diagnostics:
-    """One row of numbers per world. `quantities` declares them, and `at` has the column in which each begins."""
+    """One row of numbers per world. `quantities` declares them, and `at` has the column in which each begins.
 
-    def __init__(self, arrays: State, gather: Gather, carrier, modulus: float):
+    They are sums over the slab of each tank, but for the centre of mass and what slides: these weigh each tank by its
+    length `along` (W, tanks) a ship, over that of the first.
+    """
+
+    def __init__(self, arrays: State, gather: Gather, carrier, modulus: float, along: np.ndarray):
         self.gather, self.points, self.nodes, self.order = gather, gather.points, gather.nodes, gather.order
         self.units, self.carrier, self.exact, self.modulus = gather.units, carrier, arrays.exact, modulus
         self.quantities = (*quantities.SERIES, *quantities.CHECKED)
@@ -28,6 +32,7 @@ class Diagnostics:
         columns = sum(quantity.width for quantity in self.quantities)
         own, row = arrays.under("bulk.diagnostics"), (Axis("world", self.points.worlds), Axis("quantity", columns))
         (self.rows,) = own.reals(row, "rows", kind=arrays.exact, kept=False)
+        self.along = own.holding("along", along, "world tank", arrays.exact)
 
     def sums_at(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of every world at `time` (s), which must be the points' own: (W, *shape) of each by name."""
@@ -44,12 +49,15 @@ class Diagnostics:
     def sum_world(self, w, time):
         p = self.points
         zero, shear_modulus = ti.cast(0.0, self.exact), ti.cast(self.gather.numbers[0], self.exact)
-        mass, of_y, of_z, kinetic, elastic, sliding, crowding = zero, zero, zero, zero, zero, zero, zero
+        mass, slab_y, slab_z, kinetic, elastic, crowding = zero, zero, zero, zero, zero, zero
+        aboard, of_y, of_z, sliding = zero, zero, zero, zero
         escaped, densest = ti.cast(-1.0, self.exact), zero
         for i in range(p.count):
             m = ti.cast(p.mass[w, i], self.exact)
             y, z = ti.cast(p.place[0][w, i], self.exact), ti.cast(p.place[1][w, i], self.exact)
-            mass, of_y, of_z = mass + m, of_y + m * y, of_z + m * z
+            whole = m * self.along[w, self.order.of(i)]
+            mass, slab_y, slab_z = mass + m, slab_y + m * y, slab_z + m * z
+            aboard, of_y, of_z = aboard + whole, of_y + whole * y, of_z + whole * z
             kinetic += ti.cast(self.order.kinetic(w, i), self.exact)
             volume, free = ti.cast(p.volume[w, i], self.exact), ti.cast(p.free[w, i], self.exact)
             if free > volume:
@@ -59,16 +67,17 @@ class Diagnostics:
             square = 0.5 * (s_yy * s_yy + s_zz * s_zz + s_xx * s_xx) + s_yz * s_yz
             elastic += volume * square / (2.0 * shear_modulus)
             if p.use[w, i] > FULL:
-                sliding += m
+                sliding += whole
             crowding += m * self.crowd(w, i)
             densest = ti.max(densest, free / volume - 1.0)
             if not self.is_within(i, y, z):
                 escaped = i
         thickness = ti.cast(self.gather.numbers[5], self.exact)
-        self.rows[w, self.at.centre_of_mass], self.rows[w, self.at.centre_of_mass + 1] = of_y / mass, of_z / mass
+        self.rows[w, self.at.centre_of_mass] = of_y / aboard
+        self.rows[w, self.at.centre_of_mass + 1] = of_z / aboard
         self.rows[w, self.at.kinetic] = thickness * kinetic
         self.rows[w, self.at.potential] = (
-            thickness * mass * self.carrier.gravity[0] * self.height(w, time, of_y / mass, of_z / mass)
+            thickness * mass * self.carrier.gravity[0] * self.height(w, time, slab_y / mass, slab_z / mass)
         )
         self.rows[w, self.at.elastic] = thickness * elastic
         losses = ti.Vector([zero, zero, zero, zero, -thickness * kinetic])  # what nodes gained and points have not
@@ -79,7 +88,7 @@ class Diagnostics:
                 losses[1 + way] += self.gather.lost[u, way]
         for way in ti.static(range(5)):
             self.rows[w, self.at.bulk_losses + way] = losses[way]
-        self.rows[w, self.at.bulk_sliding] = sliding / mass
+        self.rows[w, self.at.bulk_sliding] = sliding / aboard
         self.rows[w, self.at.bulk_crowding] = crowding / mass
         self.rows[w, self.at.bulk_escaped], self.rows[w, self.at.bulk_densest] = escaped, densest
 

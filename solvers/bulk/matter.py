@@ -42,7 +42,7 @@ class BulkMatter(Matter):
         self.spread = Spread(arrays, units, self.points, order, bulk)
         self.nodes = Nodes(arrays, units, self.spread, order, bulk, self.load, carrier, self.thickness)
         self.gather = Gather(arrays, units, self.points, order, self.spread, self.nodes, bulk, scene.gravity)
-        self.diagnostics = Diagnostics(arrays, self.gather, carrier, bulk.material.bulk_modulus)
+        self.diagnostics = Diagnostics(arrays, self.gather, carrier, bulk.material.bulk_modulus, _alongs(scene))
         if carrier.responds:
             self.load.lag(self._held_mass(), relaxed=False)
         self.before = (Phase(order.sort), Phase(self.spread.spread, units), Phase(self.nodes.react, units))
@@ -134,6 +134,13 @@ class BulkMatter(Matter):
         p = self.points
         y, z, mass, volume = p.read(*p.place, p.mass, p.volume)
         return [frozen(*one) for one in zip(y, z, per_slab(self.scene) * mass, volume, strict=True)]
+
+
+def _alongs(scene) -> np.ndarray:
+    """How long each tank (W, tanks) is along its ship, over the first one."""
+    rows = [[tank.share(ship.length) for tank in scene.tanks] for ship in scene.vessels]
+    shares = np.array(rows or np.ones((scene.worlds, len(scene.tanks))))
+    return shares / shares[:, :1]
 
 
 def make_bulk(scene, context: Context) -> BulkMatter | None:

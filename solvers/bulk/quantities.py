@@ -3,7 +3,9 @@
 from solvers.machine.quantity import Quantity, directions
 
 SERIES = (
-    Quantity("centre_of_mass", "m", directions, "centre of mass of the bulk in the tank"),
+    Quantity(
+        "centre_of_mass", "m", directions, "centre of mass of the bulk in the tank, each of several by its length"
+    ),
     Quantity(
         "kinetic", "J", label="kinetic energy of the bulk, that of velocity gradients included, relative to the tank"
     ),

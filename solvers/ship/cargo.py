@@ -4,6 +4,8 @@ In a slow heel a bed keeps its shape up to the angle of repose. Beyond it grains
 the horizon by that angle again, so it leans by heel − repose against the deck. A fluid has an angle of repose of 0.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from solvers.machine.errors import Unavailable
@@ -48,20 +50,21 @@ def relaxed_levers(
     loading: Loading,
     water: Water,
     heels: np.ndarray,
-    hold: Section,
-    area: float,
-    mass: float,
+    fillings: Sequence[tuple[Section, float, float]],
     repose: float,
 ) -> np.ndarray:
     """Righting levers GZ (m) at heels (rad) with a cargo that has slid to its angle of `repose` (rad).
 
-    The cargo has a `mass` (kg/m) and an `area` (m²). `loading` is that of hull and level cargo together, upright; the
-    hold's axes are the hull's.
+    Each of the `fillings` is a hold, an area (m²) and a mass (kg/m). `loading` is that of hull and level cargo
+    together, upright; the holds' axes are the hull's.
     """
-    upright = filling_centre(hold, area, 0.0)
+    upright = [filling_centre(hold, area, 0.0) for hold, area, _ in fillings]
     levers = []
     for heel, leaning in zip(heels, lean(heels, repose), strict=True):
-        moved = mass / loading.mass * (filling_centre(hold, area, leaning) - upright)
+        ways = [
+            filling_centre(hold, area, leaning) - lay for (hold, area, _), lay in zip(fillings, upright, strict=True)
+        ]
+        moved = sum(mass / loading.mass * way for (_, _, mass), way in zip(fillings, ways, strict=True))
         centre = loading.centre[0] + moved[0], loading.centre[1] + moved[1]
         levers.append(righting_lever(section, Loading(loading.mass, centre), water, heel))
     return np.array(levers)

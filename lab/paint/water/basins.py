@@ -1,4 +1,4 @@
-"""The tanks of a recording as they are drawn: where each is, and which particles of water are in it."""
+"""The tanks of a recording as they are drawn: where each is, and which particles of water or points are in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.preset.schema import Preset
+from lab.preset.sections.bulk.beds import beds_of, slices
 from lab.preset.sections.water.tanks import further_tanks
 from solvers.fluid.start.packing import area_of, below
 
@@ -14,7 +15,7 @@ GAP = 0.08  # of a tank's height, between tanks that are drawn one above the oth
 
 @dataclass(frozen=True, eq=False)
 class Basin:
-    """A tank with an `outline` (m, 2) m and `open_edges`, whose water has the numbers of the slice `drops`.
+    """A tank with an `outline` (m, 2) m and `open_edges`, whose water or bulk has the numbers of the slice `drops`.
 
     Tanks that stand one behind the other are drawn one above the other: each is lifted by `lift` (m).
     """
@@ -31,7 +32,7 @@ class Basin:
 
 
 def basins_of(preset: Preset, outline: np.ndarray, open_edges: Sequence[int], volume: np.ndarray) -> list[Basin]:
-    """The tanks of a preset, the first with its own `outline`; volume (W, n): of the particles, m²."""
+    """The tanks of a preset, the first with its own `outline`; volume (W, n): of the particles or points, m²."""
     further = further_tanks(preset, 1.0) if preset.ship else ()
     shapes = [(outline, open_edges), *((tank.outline, tank.open_edges) for tank in further)]
     drops, found = _drops(preset, volume), []
@@ -46,7 +47,9 @@ def basins_of(preset: Preset, outline: np.ndarray, open_edges: Sequence[int], vo
 
 
 def _drops(preset: Preset, volume: np.ndarray) -> dict[int, slice]:
-    """The numbers of the particles in each tank with water: their volumes add up to the area that it fills."""
+    """The numbers of the particles in each tank with water, or bulk: their volumes add up to the area that it fills."""
+    if preset.bulk:
+        return dict(enumerate(slices(beds_of(preset), volume[0])))
     if preset.water is None:
         return {}
     if not preset.tanks:

@@ -193,7 +193,9 @@ class FurtherTank(Shell):
         tuple[float, float], Unit("m"), Doc("Where its origin is in the hull's axes, y and z, as `ship.hold` is.")
     ] = (0.0, 0.0)
     depth: Annotated[
-        Length | None, Usual(0.02, 1.0, "mm"), Doc("Depth of the water in it; it is empty without it.")
+        Length | None,
+        Usual(0.02, 1.0, "mm"),
+        Doc("Depth of the water, or of the bulk, in it; it holds no water without it."),
     ] = None
 
 

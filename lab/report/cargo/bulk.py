@@ -3,7 +3,9 @@
 import math
 from collections.abc import Iterator
 
+from lab.base.text import inline
 from lab.preset.schema import Preset
+from lab.preset.sections.bulk.beds import beds_of
 from lab.preset.units import show
 from lab.recording import Recording
 from solvers.bulk.given import Bulk
@@ -33,6 +35,7 @@ def described(preset: Preset, scene) -> list[tuple[str, str]]:
     walls = "held fast by rough ones" if preset.bulk.rough else f"{material.wall_friction:.3g}"
     return [
         ("bed", f"{show(preset.bulk.density, 'kg/m^3')}, {bulk.count} points, four a cell of {cell}"),
+        *_tanks(preset, bulk),
         ("friction", f"{material.friction:.3g}, a slope of {angle:.1f} deg; {law}"),
         ("at walls", walls),
         (
@@ -45,6 +48,15 @@ def described(preset: Preset, scene) -> list[tuple[str, str]]:
         ),
         ("cannot", CANNOT),
         ("beside grains", BESIDE),
+    ]
+
+
+def _tanks(preset: Preset, bulk: Bulk) -> list[tuple[str, str]]:
+    """A row on each of several tanks; none of one alone."""
+    beds = beds_of(preset) if preset.tanks else ()
+    return [
+        (f"in {bed.name}", f"{show(bed.high, 'm')} deep, {bed.area:.4g} m^2, {count} points")
+        for bed, count in zip(beds, bulk.fill if beds else (), strict=True)
     ]
 
 
@@ -61,6 +73,9 @@ def in_tank(recording: Recording) -> Iterator[str]:
     angle = math.degrees(math.atan(bulk.slow_friction))
     bed = f"bulk of {show(bulk.density, 'kg/m^3')} as a continuum"
     yield f"{bed}, {count} material points in cells of {_cell(recording)}"
+    if recording.preset.tanks:
+        beds = (f"{bed.name} {show(bed.high, 'm')} deep" for bed in beds_of(recording.preset))
+        yield f"in {1 + len(recording.preset.tanks)} tanks: {inline(', '.join(beds))}"
     yield f"friction {bulk.slow_friction:.3g}, a slope of {angle:.1f} deg; at walls " + (
         "held fast" if bulk.rough else f"{bulk.along_walls:.3g}"
     )

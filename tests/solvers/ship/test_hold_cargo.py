@@ -55,7 +55,7 @@ def test_the_area_of_a_bed_follows_from_the_height_of_its_centre():
 
 
 def levers(heels, repose):
-    return relaxed_levers(BARGE, LOADED, WATER, heels, HOLD, AREA, CARGO, repose)
+    return relaxed_levers(BARGE, LOADED, WATER, heels, [(HOLD, AREA, CARGO)], repose)
 
 
 def test_righting_levers_with_relaxed_cargo():

@@ -30,7 +30,7 @@ def test_a_heap_that_slid_has_the_lever_of_relaxed_cargo():
     heels = np.radians([10.0, 24.0, 30.0, 45.0, 70.0, -45.0])
     # The tank's origin is its floor's middle; so is the filling's, which leaves shifts alone to count.
     hold = Section(box(WIDE, HIGH).outline)
-    relaxed = relaxed_levers(section, loading, water, heels, hold, WIDE * DEEP, CARGO, REPOSE)
+    relaxed = relaxed_levers(section, loading, water, heels, [(hold, WIDE * DEEP, CARGO)], REPOSE)
     moment = SHIP.cargo_moment(np.zeros(len(heels)), heels)
     found = righting_levers(section, loading, water, heels) - moment / (MASS * GRAVITY)
     assert found == pytest.approx(relaxed, abs=2e-6)

@@ -1,4 +1,4 @@
-"""What the bulk of a preset must agree with: its tank, its own keys, and what it cannot be together with."""
+"""What the bulk of a preset must agree with: its tanks, its own keys, and what it cannot be together with."""
 
 from typing import Protocol
 
@@ -6,25 +6,23 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import area
+from lab.preset.sections.bulk.beds import Bed, beds_of
+from lab.preset.sections.bulk.beds import Filled as Bedded
 from lab.preset.sections.bulk.section import Bulk
-from lab.preset.sections.tank import Tank
 from lab.preset.units import show
 
 LEAST_CELLS = 2.0  # in the depth of a layer
 LEAST_ACROSS = 4.0  # across a hopper
-MOST_CELLS = 400_000  # in a tank
+MOST_CELLS = 400_000  # in all tanks
 
 
-class Filled(Protocol):
+class Filled(Bedded, Protocol):
     """The sections of a preset that its bulk must agree with."""
 
-    tank: Tank
-    bulk: Bulk | None
     grains: object | None
     water: object | None
     parts: dict[str, object]
     axle: object | None
-    tanks: dict[str, object]
     axes: int
 
 
@@ -44,7 +42,15 @@ def check_bulk(preset: Filled) -> None:
         _check_region(bulk, corners)
     elif bulk.depth >= float(np.ptp(corners[:, 1])):
         raise LabError(f"bulk.depth: the tank is {show(float(np.ptp(corners[:, 1])), 'm')} high; fill it less.")
-    _check_cells(bulk, corners)
+    beds = beds_of(preset)
+    for bed in beds:
+        _check_cells(bulk, bed, "the tank" if bed is beds[0] else f"tanks.{bed.name}")
+    cells = sum(np.prod(np.ptp(bed.corners, axis=0)) / _cell(bulk, bed) ** 2 for bed in beds)
+    if cells > MOST_CELLS:
+        there = "the tank" if len(beds) == 1 else "all tanks"
+        raise LabError(
+            f"bulk.spacing: {there} would have {cells:.3g} cells, more than {MOST_CELLS:.0e}; make them wider."
+        )
 
 
 def _check_company(preset: Filled) -> None:
@@ -54,7 +60,6 @@ def _check_company(preset: Filled) -> None:
         "water": preset.water is not None,
         "parts": bool(preset.parts),
         "axle": preset.axle is not None,
-        "tanks": bool(preset.tanks),
     }
     for name, there in others.items():
         if there:
@@ -63,6 +68,14 @@ def _check_company(preset: Filled) -> None:
         raise LabError("bulk: is plane only; leave tank.along, tank.turned and tank.mesh out.")
     if not preset.tank.lid:
         raise LabError("tank.lid: bulk needs a closed tank; leave this out.")
+    for name, further in preset.tanks.items():
+        if not further.lid:
+            raise LabError(f"tanks.{name}.lid: bulk needs a closed tank; leave this out.")
+        if further.depth is None:
+            raise LabError(
+                f"tanks.{name}.depth: missing; say how deep the bulk is in it, or leave the whole tank out, which "
+                "would be empty."
+            )
 
 
 def _check_friction(bulk: Bulk) -> None:
@@ -97,27 +110,25 @@ def _check_region(bulk: Bulk, corners: np.ndarray) -> None:
         raise LabError("bulk.region: reaches out of the tank; move its corners into the tank.")
 
 
-def _check_cells(bulk: Bulk, corners: np.ndarray) -> None:
-    """Raise LabError for cells that are too wide for the layer or the hopper, or too many."""
-    filled, width = bulk.filled(corners), float(np.ptp(corners[:, 0]))
-    cell = width / max(1, round(width / bulk.spacing))
-    high = float(np.ptp(filled[:, 1]))
+def _cell(bulk: Bulk, bed: Bed) -> float:
+    """The width (m) of a cell in the tank of a bed."""
+    wide = float(np.ptp(bed.corners[:, 0]))
+    return wide / max(1, round(wide / bulk.spacing))
+
+
+def _check_cells(bulk: Bulk, bed: Bed, tank: str) -> None:
+    """Raise LabError for cells that are too wide for the layer or the hopper of a tank, as it is called."""
+    cell, high = _cell(bulk, bed), bed.high
     if high < LEAST_CELLS * cell:
         raise LabError(
-            f"bulk.spacing: the bed is {show(high, 'm')} deep, less than {LEAST_CELLS:g} cells of {show(cell, 'm')}; "
-            f"make cells of {show(high / LEAST_CELLS, 'm')} at most."
+            f"bulk.spacing: the bed in {tank} is {show(high, 'm')} deep, less than {LEAST_CELLS:g} cells of "
+            f"{show(cell, 'm')}; make cells of {show(high / LEAST_CELLS, 'm')} at most."
         )
-    above = float(corners[:, 1].min()) + LEAST_CELLS * cell
-    across = _width_at(corners, above)
+    across = _width_at(bed.corners, float(bed.corners[:, 1].min()) + LEAST_CELLS * cell)
     if across < LEAST_ACROSS * cell * (1.0 - 1e-9):
         raise LabError(
-            f"bulk.spacing: two cells above its floor the tank is {show(across, 'm')} wide, less than {LEAST_ACROSS:g} "
-            f"cells of {show(cell, 'm')}; make cells of {show(across / LEAST_ACROSS, 'm')} at most."
-        )
-    cells = width * float(np.ptp(corners[:, 1])) / cell**2
-    if cells > MOST_CELLS:
-        raise LabError(
-            f"bulk.spacing: the tank would have {cells:.3g} cells, more than {MOST_CELLS:.0e}; make them wider."
+            f"bulk.spacing: two cells above its floor {tank} is {show(across, 'm')} wide, less than "
+            f"{LEAST_ACROSS:g} cells of {show(cell, 'm')}; make cells of {show(across / LEAST_ACROSS, 'm')} at most."
         )
 
 

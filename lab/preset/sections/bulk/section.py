@@ -37,11 +37,13 @@ class Bulk:
         Length, Cheap(), Usual(0.1, 2.0, "m"), Doc("Width of a cell; a whole number of them spans the tank.")
     ]
     depth: Annotated[
-        Length | None, Usual(0.1, 15.0, "m"), Doc("Depth of the bed over the tank's lowest point; or give `region`.")
+        Length | None,
+        Usual(0.1, 15.0, "m"),
+        Doc("Depth of the bed over the lowest point of [tank]; or give `region`. A further tank has its own depth."),
     ] = None
     region: Annotated[
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
-        Doc("Corners, y and z each, of the part of the tank that it fills, in place of `depth`."),
+        Doc("Corners, y and z each, of the part of [tank] that it fills, in place of `depth`."),
     ] = None
     repose: Annotated[
         Annotated[float, Unit("rad"), Interval(gt=0, lt=math.pi / 3)] | None,
@@ -103,9 +105,8 @@ class Bulk:
         """The polygon (m, 2) m that it fills in a tank of these corners."""
         return cut_off(corners, self.depth) if self.depth else np.array(self.place)
 
-    def material(self, corners: np.ndarray, gravity: float) -> Granular:
-        """The material as the solver takes it, in a tank of these corners under a `gravity` (m/s²)."""
-        high = float(np.ptp(self.filled(corners)[:, 1]))
+    def material(self, high: float, gravity: float) -> Granular:
+        """The material as the solver takes it; the deepest bed is `high` (m), under a `gravity` (m/s²)."""
         return Granular(
             density=self.density,
             friction=self.slow_friction,

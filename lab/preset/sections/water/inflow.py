@@ -44,6 +44,7 @@ class Tanked(Protocol):
     ship: Ship | None
     water: Water | None
     grains: object | None
+    bulk: object | None
     inflow: dict[str, Inlet]
 
 

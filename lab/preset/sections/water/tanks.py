@@ -119,8 +119,8 @@ def _check_further(preset: Tanked, name: str, tank: FurtherTank) -> None:
         raise LabError(f"{key}.place: the tank stands out of the hull at {place}; move it, or change hull or tank.")
     if tank.depth is None:
         return
-    if preset.water is None:
-        raise LabError(f"{key}.depth: goes with water; add a table [water], or leave this out.")
+    if preset.water is None and preset.bulk is None:
+        raise LabError(f"{key}.depth: goes with water or bulk; add a table [water] or [bulk], or leave this out.")
     if tank.depth >= tank.extent[1]:
         high = show(tank.extent[1], "m")
         raise LabError(f"{key}.depth: {show(tank.depth, 'm')} is not less than the tank's height, {high}.")
