@@ -58,3 +58,42 @@ def test_every_colour_has_a_scale_and_mobilised_friction_ends_at_one(folder):
             assert np.isfinite(share).all() and share.min() >= 0.0, name
         sliding = FIELDS["sliding"]([bed])
         assert sliding.high == 1.0 and sliding.values(bed, 5).max() == pytest.approx(1.0)
+
+
+@pytest.fixture(scope="module")
+def aboard(tmp_path_factory):
+    """A ship with two holds of bulk, the starboard one twice as long, whose bed is heaped at its outer wall."""
+    heaped = {
+        "bulk.depth": False,
+        "bulk.region": [["-13.3 m", "4.3 m"], ["-9 m", "0 m"], ["0 m", "0 m"], ["-13.3 m", "8.3 m"]],
+        "tanks.starboard.length": "50 m",
+        "waves": False,
+        "run.duration": "4 s",
+        "record.picture_rate": "1 Hz",
+    }
+    folder = tmp_path_factory.mktemp("aboard") / "run"
+    name = "ship/handysize-grain-bulk-two-holds-quick"
+    return lab.run(name, folder, video=False, plots=False, quiet=True, **heaped).folder
+
+
+def test_the_shift_of_several_holds_is_that_of_each_by_mass_and_length(aboard):
+    """The steep heap to port slides inwards, the level bed to starboard stays; both tell of the whole."""
+    with open_recording(aboard) as recording:
+        values, series = measure_all(recording), recording.series
+        port, starboard = values["bulk_shift_tank"].value, values["bulk_shift_starboard"].value
+        assert port > 1.0 > 20.0 * abs(starboard)
+        area = np.array([13.3 * 8.3 - 0.5 * 4.3**2 - 0.5 * 13.3 * 8.3, 74.94])
+        mass = area * [25.0, 50.0]
+        whole = mass @ [port, starboard] / mass.sum() * 13.3 / 26.6
+        assert values["bulk_shift"].value == pytest.approx(whole, rel=0.05)
+        start = series["centre_of_mass"][0, 0, 0]
+        place, own = recording.frames["bulk_position"][0][0, :, 0], recording.bulk_volume[0] * 1.0
+        own[place > 0.0] *= 2.0
+        assert start == pytest.approx(own @ place / own.sum(), abs=1e-4)
+        assert values["bulk_carried"].value == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_picture_shows_the_bulk_of_both_holds(aboard):
+    with open_footage(aboard) as footage:
+        assert [basin.outline[:, 0].min() for basin in footage.basins] == pytest.approx([-13.3, 0.0])
+        assert footage.breadth == pytest.approx(26.6)

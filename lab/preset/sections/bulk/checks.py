@@ -14,6 +14,7 @@ from lab.preset.units import show
 LEAST_CELLS = 2.0  # in the depth of a layer
 LEAST_ACROSS = 4.0  # across a hopper
 MOST_CELLS = 400_000  # in all tanks
+THE_TANK = "the tank"  # what the first one is called
 
 
 class Filled(Bedded, Protocol):
@@ -44,10 +45,10 @@ def check_bulk(preset: Filled) -> None:
         raise LabError(f"bulk.depth: the tank is {show(float(np.ptp(corners[:, 1])), 'm')} high; fill it less.")
     beds = beds_of(preset)
     for bed in beds:
-        _check_cells(bulk, bed, "the tank" if bed is beds[0] else f"tanks.{bed.name}")
+        _check_cells(bulk, bed, THE_TANK if bed is beds[0] else f"tanks.{bed.name}")
     cells = sum(np.prod(np.ptp(bed.corners, axis=0)) / _cell(bulk, bed) ** 2 for bed in beds)
     if cells > MOST_CELLS:
-        there = "the tank" if len(beds) == 1 else "all tanks"
+        there = THE_TANK if len(beds) == 1 else "all tanks"
         raise LabError(
             f"bulk.spacing: {there} would have {cells:.3g} cells, more than {MOST_CELLS:.0e}; make them wider."
         )
@@ -118,11 +119,11 @@ def _cell(bulk: Bulk, bed: Bed) -> float:
 
 def _check_cells(bulk: Bulk, bed: Bed, tank: str) -> None:
     """Raise LabError for cells that are too wide for the layer or the hopper of a tank, as it is called."""
-    cell, high = _cell(bulk, bed), bed.high
+    cell, high, what = _cell(bulk, bed), bed.high, "the bed" if tank == THE_TANK else f"the bed in {tank}"
     if high < LEAST_CELLS * cell:
         raise LabError(
-            f"bulk.spacing: the bed in {tank} is {show(high, 'm')} deep, less than {LEAST_CELLS:g} cells of "
-            f"{show(cell, 'm')}; make cells of {show(high / LEAST_CELLS, 'm')} at most."
+            f"bulk.spacing: {what} is {show(high, 'm')} deep, less than {LEAST_CELLS:g} cells of {show(cell, 'm')}; "
+            f"make cells of {show(high / LEAST_CELLS, 'm')} at most."
         )
     across = _width_at(bed.corners, float(bed.corners[:, 1].min()) + LEAST_CELLS * cell)
     if across < LEAST_ACROSS * cell * (1.0 - 1e-9):
