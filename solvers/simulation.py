@@ -90,7 +90,7 @@ class Simulation:
         sequence = Sequence(matters, self.carrier, self.parts, make_exchange(scene, context, matters))
         self.exchange_interval, self.wide = sequence.exchange_interval, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        told = scene.axes, scene.faces
+        told = scene.axes, scene.faces, scene.wall_pieces
         self.sampler = Sampler(arrays, worlds, scene.pieces, self.carrier, self.parts, loads, *told)
         arrays.finish()
 

@@ -71,16 +71,18 @@ def series_of(
     floating: bool = False,
     leaking: bool = False,
     in_space: bool = False,
+    parted: bool = False,
 ) -> tuple[Quantity, ...]:
     """The quantities in the series of a run with these matters.
 
     afloat: with those of a ship; axled: of an axle; floating: of bodies that float; leaking: of water that enters;
-    in_space: of the faces of a tank in space.
+    in_space: of the faces of a tank in space; parted: of parts in the tank.
     """
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].SERIES)
     entering = (*ship.OF_INFLOW, *inflow.SERIES), leaking
     further = (
         (tank.OF_FACES, in_space),
+        (tank.OF_PARTS, parted),
         (ship.SERIES, afloat),
         (tank.OF_AXLE, axled),
         (tank.OF_BODIES, floating),
@@ -105,7 +107,7 @@ def frames_of(
 def tables_of(preset: "Preset | Content", steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
     afloat, matters, names = bool(preset.ship), preset.matters, names_of(preset)
-    more = bool(preset.axle), bool(preset.bodies), bool(preset.inflow), preset.axes > PLANE
+    more = bool(preset.axle), bool(preset.bodies), bool(preset.inflow), preset.axes > PLANE, bool(preset.parts)
     whole = series_of(afloat, matters, *more)
     series = tuple(quantity for quantity in whole if quantity.per == "part" or names.get(quantity.per, True))
     in_space = bool(preset.bodies) and preset.axes > PLANE

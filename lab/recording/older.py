@@ -21,7 +21,11 @@ RENAMED = {  # data sets and axes of format 3, and their present names
     "drop": "water_particle",
     "puff": "air_particle",
 }
-ADDED = {"part_turn", "face_force"}  # data sets that recordings of earlier versions may not have, and go on without
+ADDED = {
+    "part_turn",
+    "face_force",
+    "part_force",
+}  # data sets that recordings of earlier versions may not have, and go on without
 
 
 def present(name: str) -> str:

@@ -52,6 +52,7 @@ TELLING = (
     "final_shift",
     "bulk_half_range",
     "bulk_shift",
+    "sliding_friction",
     "first_slip_angle",
     "moment_amplitude",
     "contact_number",

@@ -22,7 +22,8 @@ class Sampler:
     what these bear, and what is aboard of them, moves them. Its moment is about the tank's origin. `loads` are the
     loads of all matters and of contacts, each on `pieces`, of what is aboard of a body in its axes; without any the
     force is zero. `quantities` are the numbers' declarations, and `at` has the column in which each begins. Of a tank
-    in space the first `faces` pieces are its faces, whose forces are told one by one, too.
+    in space the first `faces` pieces are its faces. Forces on these, and on parts, which come after the `walls`, are
+    told one by one, too.
     """
 
     def __init__(
@@ -35,9 +36,13 @@ class Sampler:
         loads: Sequence[Load],
         axes: int = PLANE,
         faces: int = 0,
+        walls: int = 1,
     ):
         self.worlds, self.carrier, self.parts, self.loads = worlds, carrier, parts, tuple(loads)
-        self.exact, self.pieces, self.faces = arrays.exact, pieces, faces
+        self.exact, self.pieces = arrays.exact, pieces
+        told = {"face": slice(0, faces), "part": slice(walls, walls + parts.count)}
+        self.told = {one.name: told[one.per] for one in (*tank.OF_FACES, *tank.OF_PARTS)}
+        self.told = {name: own for name, own in self.told.items() if own.stop > own.start}
         self.freedoms, self.moved = len(freedoms(axes)), in_plane(axes)  # all, and those in which carriers move
         self.quantities = tuple(one.within(axes) for one in tank.SERIES)
         self.at = SimpleNamespace(**places(self.quantities))
@@ -55,15 +60,15 @@ class Sampler:
         """The quantities at `time` (s), `since` (s) after the last sample: (W, *shape) of each by name."""
         self.sample(time, since)
         found = parted(self.rows.to_numpy().astype(float), self.quantities)
-        of_faces = {quantity.name: self.on_pieces.to_numpy()[:, : self.faces] for quantity in tank.OF_FACES}
-        return found | (of_faces if self.faces else {})
+        on_pieces = self.on_pieces.to_numpy() if self.told else None
+        return found | {name: on_pieces[:, own].copy() for name, own in self.told.items()}
 
     @property
     def means(self) -> dict[str, np.ndarray]:
         """Of each quantity that is a mean over time, a zero (W, *shape)."""
         found = {one.name: np.zeros((self.worlds, *one.shape)) for one in self.quantities if one.mean}
-        of_faces = {one.name: np.zeros((self.worlds, self.faces, self.freedoms)) for one in tank.OF_FACES}
-        return found | (of_faces if self.faces else {})
+        sizes = {name: own.stop - own.start for name, own in self.told.items()}
+        return found | {name: np.zeros((self.worlds, size, self.freedoms)) for name, size in sizes.items()}
 
     @ti.kernel
     def sample(self, time: ti.f64, since: ti.f64):

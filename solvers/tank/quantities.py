@@ -30,6 +30,16 @@ OF_FACES = (
         per="face",
     ),
 )
+OF_PARTS = (
+    Quantity(
+        "part_force",
+        "N, N, N m",
+        freedoms,
+        "force of the cargo on each part, in the tank's axes",
+        mean=True,
+        per="part",
+    ),
+)
 OF_BODIES = (
     Quantity(
         "body_place",

@@ -33,6 +33,7 @@ class Content:
     openings: tuple[str, ...]
     inflow: tuple[str, ...]
     repeats: int
+    parts: tuple[str, ...]
     axes: int
     faces: tuple[str, ...]
     wet: bool

@@ -39,7 +39,7 @@ def content(table: object) -> Content:
     own = has["material"], has["ship"], has["axle"], gauges
     room = bodies, tuple(rooms), tuple(openings), tuple(kept.get("inflow", ()))
     soaks = has["water"] and has["grains"] and _soaks(kept.get("parts", {}), grains.get("room"))
-    return Content(matters, *own, *room, repeats, axes, faces, wet, soaks)
+    return Content(matters, *own, *room, repeats, tuple(kept.get("parts", {})), axes, faces, wet, soaks)
 
 
 def _without_own_words(kept: Mapping) -> Mapping:

@@ -1,0 +1,99 @@
+"""The friction of a level plate that moves along under a bed, as a shear cell measures the friction of a wall.
+
+sliding_friction: the work of the bed against the plate over the load across it, ∫ F·dy / ∫ N |dy|, over the last half
+of the plate's way: at first grains roll along with it, and the bed leans on what holds it. F and N are the forces of
+the bed on the plate along and across it, dy is the plate's way in the tank; so a plate that goes to and fro is
+measured, too. sliding_friction_PART where several plates move so. Grains that do not roll slide at their coefficient of
+friction, those that roll at less. How to use it as `bulk.wall_friction`: `docs/physics/bulk-numbers.md`.
+Error: standard error of the means of blocks of equal ways.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from lab.measures.drawing import BLUE, GREY, Sheet, band
+from lab.measures.steady import BLOCKS
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+OF = "grains"
+LAST = 0.5  # of the way
+LEVEL = 1e-6  # of its length: a plate whose ends differ more in height slopes
+LEAST = 1.0  # mean diameters of way
+LEAST_SAMPLES = 2 * BLOCKS
+MISSING = "the plate bore no load"
+
+
+def applies(recording: Recording) -> bool:
+    """A level plate moved along itself, for some time, and its load was recorded."""
+    return len(recording.series["time"]) > LEAST_SAMPLES and bool(plates(recording))
+
+
+def plates(recording: Recording) -> dict[str, np.ndarray]:
+    """The places (T,) m along y of the level plates that slide, by their names, at the times of the series."""
+    if "part_force" not in recording.series or not len(recording.frames["time"]):
+        return {}
+    place, found = recording.frames["part"][:][:, 0].astype(float), {}
+    for number, (name, line) in enumerate(recording.parts.items()):
+        part, length = recording.preset.parts[name], float(np.ptp(line[:, 0]))
+        level = not part.closed and float(np.ptp(line[:, 1])) <= LEVEL * length
+        way = np.abs(np.diff(place[:, number], axis=0)).sum(axis=0)
+        turned = "part_turn" in recording.frames and bool(recording.frames["part_turn"][:][:, 0, number].any())
+        if level and not turned and way[0] > LEAST * recording.mean_diameter.mean() and way[1] <= LEVEL * way[0]:
+            found[name] = np.interp(recording.series["time"], recording.frames["time"][:], place[:, number, 0])
+    return found
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """sliding_friction of each plate, a pure number."""
+    found = {name: _friction(recording, name, place) for name, place in plates(recording).items()}
+    return {f"sliding_friction_{name}" if len(found) > 1 else "sliding_friction": one for name, one in found.items()}
+
+
+def _friction(recording: Recording, name: str, place: np.ndarray) -> Value:
+    """Work over load times way, of all of the last part and of its blocks."""
+    along, across, _ = _loads(recording, name)
+    step = np.diff(place)[:, None]  # a sample of the series is the mean since the one before
+    gone = np.cumsum(np.abs(step))
+    work, load = along[1:] * step, across[1:] * np.abs(step)
+    share = (gone - (1.0 - LAST) * gone[-1]) / (LAST * gone[-1])
+    block = np.clip((share * BLOCKS).astype(int), 0, BLOCKS - 1)
+    kept = share > 0.0
+    each = [_ratio(work[kept & (block == k)], load[kept & (block == k)]) for k in range(BLOCKS)]
+    errors = np.std(each, axis=0, ddof=1) / np.sqrt(BLOCKS)
+    note = f"of the last {LAST * gone[-1]:.3g} m of {gone[-1]:.3g}"
+    value = _ratio(work[kept], load[kept])
+    return over_worlds(value, "1", uncertainties=errors, kind="averaging", note=note, missing=MISSING)
+
+
+def _ratio(work: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Work (k, W) over load times way (k, W), of each world; not a number without load."""
+    total = load.sum(axis=0)
+    return np.where(total > 0.0, -work.sum(axis=0) / np.where(total > 0.0, total, 1.0), np.nan)
+
+
+def _loads(recording: Recording, name: str) -> tuple[np.ndarray, np.ndarray, int]:
+    """The forces (T, W) N of the bed on a plate, along y and downwards, and the number of the plate."""
+    number = list(recording.parts).index(name)
+    force = recording.series["part_force"][:, :, number]
+    return force[..., 0], -force[..., 1], number
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The force along each plate over that across it, against its way; upright line: from where on it counts."""
+    moved = plates(recording)
+    rows = sheet.panels(heights=(1,) * len(moved))[:, 0]
+    for axes, (name, place) in zip(rows, moved.items(), strict=True):
+        along, across, _ = _loads(recording, name)
+        gone = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(place)))])
+        way = np.sign(np.gradient(place))[:, None]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            band(axes, gone, np.where(across > 0.0, -way * along / across, np.nan), BLUE, f"along over across {name}")
+        axes.axhline(recording.preset.wall_material.friction, color=GREY, ls="--", lw=1.0, label="coefficient")
+        axes.axvline((1.0 - LAST) * gone[-1], color=GREY, ls=":", lw=1.0)
+        axes.set_ylabel("friction")
+    rows[-1].set_xlabel("way of the plate (m)")
+
+
+FIGURES = {"sliding-friction": draw}
