@@ -1,10 +1,11 @@
 """The friction of a level plate that moves along under a bed, as a shear cell measures the friction of a wall.
 
-sliding_friction: the work of the bed against the plate over the load across it, ∫ F·dy / ∫ N |dy|, over the last half
-of the plate's way: at first grains roll along with it, and the bed leans on what holds it. F and N are the forces of
-the bed on the plate along and across it, dy is the plate's way in the tank; so a plate that goes to and fro is
-measured, too. sliding_friction_PART where several plates move so. Grains that do not roll slide at their coefficient of
-friction, those that roll at less. How to use it as `bulk.wall_friction`: `docs/physics/bulk-numbers.md`.
+sliding_friction: the work of the bed against the plate over the load across it, ∫ F·dy / ∫ N |dy|, over the last
+quarter of the plate's way. At first the bed does not slide: it shears in itself until what holds it pushes back as hard
+as the plate drags. F and N are the forces of the bed on the plate along and across it, dy is the plate's way in the
+tank; so a plate that goes to and fro is measured, too. sliding_friction_PART where several plates move so. Grains that
+keep their places slide at their coefficient of friction, those that roll at less. How to use it as
+`bulk.wall_friction`: `docs/physics/bulk-numbers.md`.
 Error: standard error of the means of blocks of equal ways.
 """
 
@@ -18,7 +19,7 @@ from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
 OF = "grains"
-LAST = 0.5  # of the way
+LAST = 0.25  # of the way
 LEVEL = 1e-6  # of its length: a plate whose ends differ more in height slopes
 LEAST = 1.0  # mean diameters of way
 LEAST_SAMPLES = 2 * BLOCKS

@@ -7,6 +7,7 @@ import numpy as np
 
 from lab.paint import palette
 from lab.paint.footage import Bed
+from lab.paint.water.basins import breadth
 from lab.paint.water.gauges import hues_of
 from solvers.machine.quantity import ROLL
 
@@ -207,7 +208,7 @@ def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
 
     def shift(bed: Bed) -> np.ndarray:
         centre = bed.footage.centre_of_mass[:, bed.world, axis]
-        unit = 0.01 * bed.footage.breadth if of_bulk else bed.diameter
+        unit = 0.01 * breadth(bed.footage.basins) if of_bulk else bed.diameter
         return (centre - centre[0]) / unit
 
     return f"shift Δ{'yz'[axis]} ({'% of width' if of_bulk else 'diameters'})", shift

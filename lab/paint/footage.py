@@ -18,7 +18,7 @@ from lab.paint.scene.moves import moved_line, on_the_way
 from lab.paint.sea import Rail, Sea
 from lab.paint.space.scene import scene_in_space
 from lab.paint.space.stance import lengths
-from lab.paint.water.basins import basins_of
+from lab.paint.water.basins import basins_in
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.contacts.again import Again
@@ -63,8 +63,7 @@ class Footage:
         self.matters, self._series = recording.preset.matters, series
         self.water = Pool.of(recording.preset, recording.volume, recording.air_volume)
         self.bulk = recording.bulk_volume if recording.bulk_volume.size else None
-        held = recording.volume if self.bulk is None else self.bulk
-        self.basins = basins_of(recording.preset, recording.outline, recording.open_edges, held)
+        self.basins = basins_in(recording)
         self.cargo, self._preset = Stowage.of(recording.preset), recording.preset
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
@@ -103,11 +102,6 @@ class Footage:
     def afloat(self) -> np.ndarray:
         """The corners (k, 2) m of a ship's hull and of all tanks as they are drawn."""
         return np.concatenate([self.sea.hull, *(basin.drawn for basin in self.basins)])
-
-    @property
-    def breadth(self) -> float:
-        """How far (m) all tanks reach across."""
-        return float(np.ptp(np.concatenate([basin.outline for basin in self.basins])[:, 0]))
 
     @property
     def worlds(self) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 from lab.preset.schema import Preset
 from lab.preset.sections.bulk.beds import beds_of, slices
 from lab.preset.sections.water.tanks import further_tanks
+from lab.recording import Recording
 from solvers.fluid.start.packing import area_of, below
 
 GAP = 0.08  # of a tank's height, between tanks that are drawn one above the other
@@ -44,6 +45,17 @@ def basins_of(preset: Preset, outline: np.ndarray, open_edges: Sequence[int], vo
                 top = end[1] - low[1] + GAP * (high[1] - low[1])
         found.append(Basin(shape, gaps, drops.get(number, slice(0, 0)), top))
     return found
+
+
+def basins_in(recording: Recording) -> list[Basin]:
+    """The tanks of a recording."""
+    held = recording.bulk_volume if recording.preset.bulk else recording.volume
+    return basins_of(recording.preset, recording.outline, recording.open_edges, held)
+
+
+def breadth(basins: Sequence[Basin]) -> float:
+    """How far (m) tanks reach across, all in one."""
+    return float(np.ptp(np.concatenate([basin.outline for basin in basins])[:, 0]))
 
 
 def _drops(preset: Preset, volume: np.ndarray) -> dict[int, slice]:

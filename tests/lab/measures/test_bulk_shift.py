@@ -8,6 +8,7 @@ from lab.measures import measure_all
 from lab.paint.bulk.colours import FIELDS
 from lab.paint.film import choose_beds
 from lab.paint.footage import open_footage
+from lab.paint.water.basins import breadth
 from lab.recording import open_recording
 
 SMALL = {
@@ -96,4 +97,4 @@ def test_the_shift_of_several_holds_is_that_of_each_by_mass_and_length(aboard):
 def test_a_picture_shows_the_bulk_of_both_holds(aboard):
     with open_footage(aboard) as footage:
         assert [basin.outline[:, 0].min() for basin in footage.basins] == pytest.approx([-13.3, 0.0])
-        assert footage.breadth == pytest.approx(26.6)
+        assert breadth(footage.basins) == pytest.approx(26.6)
