@@ -16,6 +16,7 @@ import numpy as np
 from lab.measures.drawing import BLUE, GREY, Sheet, band
 from lab.measures.steady import BLOCKS
 from lab.measures.value import Value, over_worlds
+from lab.preset.sections.parts import Part
 from lab.recording import Recording
 
 OF = "grains"
@@ -23,27 +24,30 @@ LAST = 0.25  # of the way
 LEVEL = 1e-6  # of its length: a plate whose ends differ more in height slopes
 LEAST = 1.0  # mean diameters of way
 LEAST_SAMPLES = 2 * BLOCKS
-MISSING = "the plate bore no load"
+MISSING, STOOD = "the plate bore no load", "the plate hardly moved"
 
 
 def applies(recording: Recording) -> bool:
-    """A level plate moved along itself, for some time, and its load was recorded."""
-    return len(recording.series["time"]) > LEAST_SAMPLES and bool(plates(recording))
+    """A level plate moves along itself, for some time, and its load was recorded."""
+    long = len(recording.series["time"]) > LEAST_SAMPLES and len(recording.frames["time"]) > 0
+    return long and "part_force" in recording.series and bool(plates(recording))
 
 
 def plates(recording: Recording) -> dict[str, np.ndarray]:
     """The places (T,) m along y of the level plates that slide, by their names, at the times of the series."""
-    if "part_force" not in recording.series or not len(recording.frames["time"]):
-        return {}
-    place, found = recording.frames["part"][:][:, 0].astype(float), {}
+    time, of_frames, found = recording.series["time"], recording.frames["time"][:], {}
     for number, (name, line) in enumerate(recording.parts.items()):
-        part, length = recording.preset.parts[name], float(np.ptp(line[:, 0]))
-        level = not part.closed and float(np.ptp(line[:, 1])) <= LEVEL * length
-        way = np.abs(np.diff(place[:, number], axis=0)).sum(axis=0)
-        turned = "part_turn" in recording.frames and bool(recording.frames["part_turn"][:][:, 0, number].any())
-        if level and not turned and way[0] > LEAST * recording.mean_diameter.mean() and way[1] <= LEVEL * way[0]:
-            found[name] = np.interp(recording.series["time"], recording.frames["time"][:], place[:, number, 0])
+        part = recording.preset.parts[name]
+        if not part.closed and np.ptp(line[:, 1]) <= LEVEL * np.ptp(line[:, 0]) and _slides(part):
+            place = recording.frames["part"][:][:, 0, number, 0].astype(float)
+            found[name] = np.interp(time, of_frames, place)
     return found
+
+
+def _slides(part: Part) -> bool:
+    """Whether a part goes sideways, and no other way."""
+    moves = set(part.moves)
+    return (part.move[0] != 0.0 or bool(moves)) and part.move[1] == 0.0 and moves <= {"sway"}
 
 
 def measure(recording: Recording) -> dict[str, Value]:
@@ -57,6 +61,8 @@ def _friction(recording: Recording, name: str, place: np.ndarray) -> Value:
     along, across, _ = _loads(recording, name)
     step = np.diff(place)[:, None]  # a sample of the series is the mean since the one before
     gone = np.cumsum(np.abs(step))
+    if not gone[-1] > LEAST * recording.mean_diameter.mean():
+        return over_worlds(np.full(along.shape[1], np.nan), "1", missing=STOOD)
     work, load = along[1:] * step, across[1:] * np.abs(step)
     share = (gone - (1.0 - LAST) * gone[-1]) / (LAST * gone[-1])
     block = np.clip((share * BLOCKS).astype(int), 0, BLOCKS - 1)

@@ -10,20 +10,20 @@ from lab.measures import measure_all, sliding_friction
 from lab.recording import open_recording
 
 
-def told(place: np.ndarray, along: float, across: float, ends: float = 0.0, turn: float = 0.0) -> SimpleNamespace:
+def told(place: np.ndarray, along: float, across: float, ends: float = 0.0, **how: object) -> SimpleNamespace:
     """What is read of a recording of a plate at places (T,) m, its right end higher by `ends` (m).
 
-    The bed drags it against its way by `along` (N) and presses it by `across` (N).
+    `how`: what else the preset says of it. The bed drags it against its way by `along` (N), and presses it by `across`.
     """
     time, way = np.linspace(0.0, 1.0, len(place)), np.sign(np.diff(place, prepend=place[0]))
     force = np.stack([-along * way, np.full(len(place), -across), np.zeros(len(place))], axis=-1)[:, None, None]
     displaced = np.stack([place, np.zeros(len(place))], axis=-1)[:, None, None]
-    turns = np.full((len(place), 1, 1), turn)
+    part = {"closed": False, "move": (1.0, 0.0), "moves": {}}
     return SimpleNamespace(
         series={"time": time, "part_force": force},
-        frames={"time": time, "part": displaced, "part_turn": turns},
+        frames={"time": time, "part": displaced},
         parts={"floor": np.array([(0.0, 0.0), (9.0, ends)])},
-        preset=SimpleNamespace(parts={"floor": SimpleNamespace(closed=False)}),
+        preset=SimpleNamespace(parts={"floor": SimpleNamespace(**part | how)}),
         mean_diameter=np.array([0.1]),
     )
 
@@ -36,11 +36,13 @@ def test_a_constant_drag_is_found_whichever_way_the_plate_goes(place):
 
 
 def test_what_does_not_slide_along_itself_has_no_friction():
-    """A slope, a plate that turns, one that stands, and a bed that bears on none."""
+    """A slope, a piston, a plate that turns, one that hardly moves, and a bed that bears on none."""
     moved = np.linspace(0.0, 4.0, 101)
     assert not sliding_friction.applies(told(moved, 3.0, 10.0, ends=1.0))
-    assert not sliding_friction.applies(told(moved, 3.0, 10.0, turn=0.1))
-    assert not sliding_friction.applies(told(np.zeros(101), 3.0, 10.0))
+    assert not sliding_friction.applies(told(moved, 3.0, 10.0, move=(1.0, 1.0)))
+    assert not sliding_friction.applies(told(moved, 3.0, 10.0, moves={"roll": None}))
+    assert not sliding_friction.applies(told(moved, 3.0, 10.0, move=(0.0, 0.0)))
+    assert sliding_friction.measure(told(0.0 * moved, 3.0, 10.0))["sliding_friction"].value is None
     assert sliding_friction.measure(told(moved, 0.0, 0.0))["sliding_friction"].value is None
 
 
