@@ -74,7 +74,6 @@ def new_recording(
     the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains; open_edges: those with
     no wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None if all
     are discs; machine: device and threads, added to the data found here; steered: whether the user steers the run.
-
     The file gets its name only when it is complete. Raises LabError if the folder cannot be written, is full, or
     already holds a recording.
     """
