@@ -1,11 +1,14 @@
-"""Particles of all sorts in one table, for formats that have one list of particles."""
+"""Tables: particles of all sorts in one, for formats that have one list of them, and the columns of the series."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from solvers.machine.quantity import OWNERS, Quantity
 
 if TYPE_CHECKING:
     from lab.export.stage import Stage
@@ -54,3 +57,25 @@ def _kinds_apart(stage: Stage, cloud: str) -> bool:
 def _word(name: str) -> str:
     """A name without blanks and signs."""
     return re.sub(r"[^\w-]+", "-", name)
+
+
+def columns_of(stage: Stage, name: str, quantity: Quantity) -> Iterator[tuple[str, np.ndarray]]:
+    """The columns (T,) of a quantity of the series with their labels: "gauge_pressure left (Pa)", "pose_roll (rad)"."""
+    values = stage.recording.series[name]
+    if quantity.per == "run":
+        yield _label(name, "", "", quantity.unit), values
+        return
+    values = values[:, stage.world]
+    owner = OWNERS[quantity.per][-1]
+    owners = stage.recording.names.get(owner, []) if quantity.per != "world" else [""]
+    for k, own in enumerate(owners):
+        one = values[:, k] if quantity.per != "world" else values
+        for c, unit in enumerate(quantity.units):
+            component = quantity.components[c] if quantity.components else ""
+            yield _label(name, component, own, unit), one[:, c] if quantity.components else one
+
+
+def _label(name: str, component: str, owner: str, unit: str) -> str:
+    full = f"{name}_{component}" if component else name
+    full = f"{full} {owner}" if owner else full
+    return full if unit == "1" else f"{full} ({unit})"

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 
-from solvers.machine.quantity import DIRECTIONS, OWNERS, ROTATIONS, Quantity
+from lab.base.text import cell
+from lab.export.columns import columns_of
+from solvers.machine.quantity import DIRECTIONS, ROTATIONS
 
 if TYPE_CHECKING:
     from lab.export.stage import Stage
@@ -73,10 +75,10 @@ def _add(file: TextIO, time: float, numbers: np.ndarray) -> None:
 
 def _add_shape(file: TextIO, time: float, shape: object) -> None:
     writer = csv.writer(file, lineterminator="\n")
-    for cell, (corners, number) in enumerate(zip(shape.cells, shape.number.tolist(), strict=True)):
+    for piece, (corners, number) in enumerate(zip(shape.cells, shape.number.tolist(), strict=True)):
         for corner, point in enumerate(shape.points[corners].tolist()):
             place = [DIGITS % x for x in point]
-            writer.writerow([DIGITS % time, shape.names[number], cell, corner, *place])
+            writer.writerow([DIGITS % time, cell(shape.names[number]), piece, corner, *place])
 
 
 def _write_series(stage: Stage, path: Path) -> None:
@@ -87,27 +89,5 @@ def _write_series(stage: Stage, path: Path) -> None:
             columns[label] = values
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
+        writer.writerow([cell(label) for label in columns])
         writer.writerows([DIGITS % x for x in line] for line in np.column_stack([*columns.values()]).tolist())
-
-
-def columns_of(stage: Stage, name: str, quantity: Quantity) -> Iterator[tuple[str, np.ndarray]]:
-    """The columns (T,) of a quantity of the series with their labels: "gauge_pressure left (Pa)", "pose_roll (rad)"."""
-    values = stage.recording.series[name]
-    if quantity.per == "run":
-        yield _label(name, "", "", quantity.unit), values
-        return
-    values = values[:, stage.world]
-    owner = OWNERS[quantity.per][-1]
-    owners = stage.recording.names.get(owner, []) if quantity.per != "world" else [""]
-    for k, own in enumerate(owners):
-        one = values[:, k] if quantity.per != "world" else values
-        for c, unit in enumerate(quantity.units):
-            component = quantity.components[c] if quantity.components else ""
-            yield _label(name, component, own, unit), one[:, c] if quantity.components else one
-
-
-def _label(name: str, component: str, owner: str, unit: str) -> str:
-    full = f"{name}_{component}" if component else name
-    full = f"{full} {owner}" if owner else full
-    return full if unit == "1" else f"{full} ({unit})"

@@ -61,6 +61,14 @@ class Stage:
         self.clouds = [name for name, sizes in self._volumes.items() if sizes.size]
         self.clouds += [FIXED] if len(footage.fixed) else []
 
+    def of_tank(self) -> Stage:
+        """The same in the tank's axes."""
+        return Stage(self.recording, self.footage, self.world, earth=False)
+
+    def count(self, cloud: str) -> int:
+        """How many particles a sort has, those included that have left the scene."""
+        return len(self.given(cloud)["id"])
+
     def quantities(self, cloud: str) -> dict[str, str]:
         """The recorded quantities of a cloud besides places, by the names that they are exported under."""
         prefix, owner = OF_CLOUDS.get(cloud, ("", None))
@@ -72,16 +80,16 @@ class Stage:
         """The units of a cloud's values by name."""
         known, found = self.recording.frames.quantities, self.quantities(cloud)
         volume = "m^3" if self.axes == SPACE else "m^2"
-        given = {name: unit or volume for name, unit in GIVEN.items() if name in self._given(cloud)}
+        given = {name: unit or volume for name, unit in GIVEN.items() if name in self.given(cloud)}
         return given | {name: known[full].unit for name, full in found.items()}
 
     def cloud(self, name: str, row: int) -> Cloud:
         """The particles of a sort at a picture."""
         if name == FIXED:
-            values = self._given(name)
+            values = self.given(name)
             return Cloud(self._placed(self.footage.fixed[:, :2], row), values)
         place = self._places(name, row)
-        values = self._given(name) | {key: self._value(key, full, row) for key, full in self.quantities(name).items()}
+        values = self.given(name) | {key: self._value(key, full, row) for key, full in self.quantities(name).items()}
         there = np.isfinite(place).all(axis=1)
         if there.all():
             return Cloud(self._placed(place, row), values)
@@ -100,7 +108,7 @@ class Stage:
     def _moved(self, shape: Shape, stance: np.ndarray) -> Shape:
         return shape.at(carried(shape.points, stance))
 
-    def _given(self, cloud: str) -> dict[str, np.ndarray]:
+    def given(self, cloud: str) -> dict[str, np.ndarray]:
         """Radius, volume, kind and number of each particle, as far as a cloud has them."""
         if cloud == FIXED:
             return {"radius": self.footage.fixed[:, 2], "id": np.arange(len(self.footage.fixed))}
