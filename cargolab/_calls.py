@@ -25,6 +25,7 @@ __all__ = [
     "calibrate",
     "colour",
     "explain",
+    "export",
     "flood",
     "hull",
     "law",
@@ -138,6 +139,28 @@ def explain(preset: "str | Path | Mapping | Preset", **overrides: object) -> str
     from lab.report.explain import explain as explained
 
     return explained(loaded)
+
+
+def export(
+    path: Path | str,
+    to: str,
+    out: Path | str | None = None,
+    *,
+    every: int = 1,
+    world: int | None = None,
+    frame: str | None = None,
+    sound: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> Path:
+    """Write a recording for other programs and return the path: `cargolab.export("renders/tilting/quick", "gsd")`.
+
+    to: vtkhdf (ParaView), gsd (OVITO), xyz, csv, netcdf (xarray) or html, a player for any browser. out: a new file, or
+    a new folder for vtkhdf and csv. every: one of so many frames. world: one of the repeats, from 0; by default the
+    first, and all of them in netcdf. frame: earth or tank. sound: only the rows before the first damaged one.
+    """
+    from lab.export.exporting import export_recording
+
+    return export_recording(path, to, out, every=every, world=world, frame=frame, sound=sound, progress=progress)
 
 
 def render(

@@ -5,6 +5,7 @@ import click
 from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
+from lab.cli.exports import export
 from lab.cli.flooding import cross_flooding, flood
 from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.options import plugins_option
@@ -28,6 +29,7 @@ def main() -> None:
     cargolab stability SHIP          judge her by the codes, without a run
     cargolab flood CASE              let water into her rooms, by formula
     cargolab sweep shaking/sway ...  run one for many values of its keys
+    cargolab export DIR --to html    give it to others: a player, or ParaView, OVITO, tables
     cargolab resume DIR              continue an interrupted run or sweep
     """
 
@@ -39,6 +41,7 @@ for command in (
     calibrate,
     cross_flooding,
     explain,
+    export,
     flood,
     gallery,
     hull,

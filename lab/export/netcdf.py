@@ -21,9 +21,7 @@ if TYPE_CHECKING:
 ENGINES = "h5netcdf", "netCDF4"
 
 
-def write_netcdf(
-    recording: Recording, every: int, world: int | None, path: Path, reach: Callable[[int], None]
-) -> None:
+def write_netcdf(recording: Recording, every: int, world: int | None, path: Path, reach: Callable[[int], None]) -> None:
     """Write series, every so many frames, and what stays the same; of all worlds or of one."""
     engine = next((name for name in ENGINES if find_spec(name)), None)
     if engine is None:

@@ -15,7 +15,10 @@ from lab.preset.units import quoted
 FORMAT = 3
 SEA = "density", "depth"  # keys of the sea in format 2
 REWORDED = {"ship": {"coupling": {"as_K": "staggered"}}}  # values by section and key, and their present words
-GONE = {"air": ("vent_area",)}  # keys by section whose models were taken out; recordings may still hold them
+# Keys by section that were taken out; recordings may still hold them
+GONE = {"air": ("vent_area",), "record": ("xdmf",)}
+# Those that a preset may still say, and what to do now
+LEFT = {"record": {"xdmf": "ParaView opens what `cargolab export --to vtkhdf` writes after the run"}}
 
 
 class OldFormat(UserWarning):
@@ -25,7 +28,7 @@ class OldFormat(UserWarning):
 def upgrade(tables: Sequence[dict], shown: str, changes: dict) -> None:
     """Put the tables of a preset and its bases, the lowest first, into the keys of the present format, in place.
 
-    Their words and those of the `changes` over them are put into present ones.
+    Their words and those of the `changes` over them are put into present ones, and keys that are gone are left out.
     Warns of a table that has another name now. Raises LabError, one sentence with the name `shown` of the preset, for
     a format that this version does not know, and for presets of different formats based on each other.
     """
@@ -53,6 +56,8 @@ def upgrade(tables: Sequence[dict], shown: str, changes: dict) -> None:
 
 def _upgrade_words(tables: Sequence[dict], shown: str) -> None:
     """Put values that have another word now into that, in place, and warn of each."""
+    for key, now in (one for table in tables for one in _leave(table)):
+        warnings.warn(f"{shown}: {key}: is not read any more: {now}; leave it out.", OldFormat, stacklevel=2)
     for key, old, new in (one for table in tables for one in _reword(table)):
         warnings.warn(f'{shown}: {key}: "{old}" is called "{new}" now; write that.', OldFormat, stacklevel=2)
 
@@ -66,6 +71,18 @@ def _reword(table: dict) -> list[tuple[str, str, str]]:
             if isinstance(old, str) and old in new:
                 table[section] = {**table[section], key: new[old]}
                 found.append((f"{section}.{key}", old, new[old]))
+    return found
+
+
+def _leave(table: dict) -> list[tuple[str, str]]:
+    """Take keys of earlier versions out, in place; returns each with what to do now."""
+    found = []
+    for section, keys in LEFT.items():
+        given = table.get(section)
+        gone = [key for key in keys if isinstance(given, Mapping) and key in given]
+        if gone:
+            table[section] = {key: value for key, value in given.items() if key not in gone}
+            found += [(f"{section}.{key}", keys[key]) for key in gone]
     return found
 
 

@@ -20,7 +20,6 @@ from lab.plugins.loading import local
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
-from lab.recording.xdmf import write_xdmf
 from lab.report.summary import terminal_summary, write_summary
 from lab.runs.batch import run_batch
 from lab.runs.belongs import check_belongs
@@ -150,8 +149,6 @@ def report(
         if video:
             with progress.costs.of("video"):
                 files["video"] = _film(folder, progress, beside)
-        if recording.preset.record.xdmf:
-            files["xdmf"] = write_xdmf(recording)
         spent = progress.costs.told() if costs else None
         write_summary(recording, measures, files, folder, progress.warnings, progress.notes, spent)
         return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings, spent))

@@ -30,6 +30,7 @@ NAMES = {
     "Simulation": ("preset", "out", "repeats", "quiet", "overrides"),
     "calibrate": ("preset", "target", "vary", "out", "repeats", "quiet", "cluster", "overrides"),
     "explain": ("preset", "overrides"),
+    "export": ("path", "to", "out", "every", "world", "frame", "sound", "progress"),
     "flood": ("case", "out", "video", "overrides"),
     "hull": tuple(["file", "density", "fair", "lbp", "ap", "stations", "scale", "up", "origin", "mirror", "close"]),
     "open": ("path", "sound"),

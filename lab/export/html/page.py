@@ -89,7 +89,11 @@ def _numbers(stage: Stage) -> list[tuple[str, str, str]]:
 def _note(stage: Stage, count: int) -> str:
     """A sentence on what the page leaves out."""
     whole = len(stage.time)
-    said = [f"This page holds {count} of the {whole} recorded pictures, to stay small or as --every asks."] if count < whole else []
+    said = (
+        [f"This page holds {count} of the {whole} recorded pictures, to stay small or as --every asks."]
+        if count < whole
+        else []
+    )
     if stage.recording.worlds > 1:
         said.append(f"It shows repeat {stage.world} of {stage.recording.worlds}.")
     if not stage.recording.complete:

@@ -128,7 +128,9 @@ class Reel:
             moved = carried(_corners(*inside[-1]) if len(points) > len(shapes) else joined, one)
             outside.append((moved.min(axis=0), moved.max(axis=0)))
         found = {"tank": np.array(inside), "earth": np.array(outside)}
-        return {name: [ends[:, 0].min(axis=0).tolist(), ends[:, 1].max(axis=0).tolist()] for name, ends in found.items()}
+        return {
+            name: [ends[:, 0].min(axis=0).tolist(), ends[:, 1].max(axis=0).tolist()] for name, ends in found.items()
+        }
 
 
 def first_stride(stage: Stage, rows: Sequence[int]) -> int:

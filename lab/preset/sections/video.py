@@ -53,9 +53,6 @@ class Record:
     checkpoint_every: Annotated[
         float, Unit("s"), Alike(), Interval(ge=0), Doc("Wall-clock time between checkpoints.")
     ] = 60.0
-    xdmf: Annotated[
-        bool, Of("grains", "water"), Doc("Write a file beside the recording with which ParaView opens it.")
-    ] = False
 
 
 @dataclass(frozen=True)

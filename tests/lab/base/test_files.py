@@ -11,7 +11,6 @@ from lab.base.errors import LabError
 from lab.base.files import named, replacing, write_text
 from lab.paint.video import poster
 from lab.recording import open_recording
-from lab.recording.xdmf import write_xdmf
 from lab.report.file import write_report
 from lab.report.plots import write_plots
 from lab.report.summary import write_summary
@@ -33,7 +32,6 @@ def results(folder) -> None:
     """All that the lab writes beside a recording, from a run's report to a poster."""
     with open_recording(folder) as recording:
         write_summary(recording, {}, write_plots(recording, {}, folder), folder)
-        write_xdmf(recording)
     write_report(folder)
     poster(folder, width=320, height=180)
     Checkpoint({}, (".",), (0, 0)).write(folder)
@@ -43,7 +41,7 @@ def test_no_result_is_written_through_a_symbolic_link(run):
     """As they may lie in the folder of a stranger's recording; an unfinished file's place may be one, too."""
     results(run)
     made = sorted(path.name for path in run.iterdir() if path.name != "recording.h5")
-    assert {"summary.md", "summary.json", "report.html", "recording.xdmf", "poster.png", "checkpoint.npz"} <= {*made}
+    assert {"summary.md", "summary.json", "report.html", "poster.png", "checkpoint.npz"} <= {*made}
     mine = run.with_name("mine")
     mine.write_text("a letter")
     for name in made:

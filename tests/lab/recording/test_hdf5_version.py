@@ -10,7 +10,6 @@ import pytest
 
 from lab.base.errors import Unusable
 from lab.recording import Recorder, open_recording, superblock
-from lab.recording.xdmf import write_xdmf
 from tests.oracles.synthetic import frame, recorder, sample
 
 LAYOUT, CONTINUATION = 8, 16  # types of messages in an object's header (HDF5 File Format Specification 3.0, IV.A.2)
@@ -111,21 +110,3 @@ def test_an_older_hdf5_reads_and_continues_a_recording(folder):
     with open_recording(folder) as recording:
         np.testing.assert_allclose(recording.series["time"], 0.1 * np.arange(6))
         assert len(recording.frames["time"][:]) == 6
-
-
-def test_vtk_reads_the_radii(folder):
-    vtk = pytest.importorskip("vtk", reason="VTK is not installed")
-    from vtk.util.numpy_support import vtk_to_numpy
-
-    with open_recording(folder) as recording:
-        path, radius = write_xdmf(recording), recording.radius
-    reader = vtk.vtkXdmfReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    beds = reader.GetOutputDataObject(0)
-    first = beds.GetBlock(0) if beds.IsA("vtkMultiBlockDataSet") else beds
-    while first.IsA("vtkMultiBlockDataSet"):
-        first = first.GetBlock(0)
-    stored = first.GetPointData()
-    read = [vtk_to_numpy(stored.GetArray(k)) for k in range(stored.GetNumberOfArrays())]
-    assert any(values.shape == radius[0].shape and np.allclose(values, radius[0]) for values in read)

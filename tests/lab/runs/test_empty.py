@@ -140,7 +140,6 @@ def test_an_empty_tank_is_steered(preset, tmp_path):
         ("contact.rolling", "constant-torque", "set contact = false"),
         ("tank.roughness", "3 mm", "set tank.roughness = false"),
         ("run.accuracy", "draft", "leave this out"),
-        ("record.xdmf", True, "leave this out"),
         ("shapes.a.cargo", "rice", "set shapes = false"),
         ("video.colour", "spin", "leave this out"),
     ],
@@ -149,7 +148,7 @@ def test_what_speaks_of_grains_is_refused_without_them(preset, key, value, remed
     with pytest.raises(LabError) as error:
         load(preset, {key: value})
     named = remedy.partition(" = ")[0].removeprefix("set ") if "false" in remedy else key
-    matter = "grains or water" if key in ("run.accuracy", "record.xdmf") else "grains"
+    matter = "grains or water" if key == "run.accuracy" else "grains"
     sentence = f"{named}: goes with {matter}, and there are none; add a table [grains], or {remedy}."
     assert str(error.value) == sentence
 

@@ -9,7 +9,6 @@ import sys
 import time
 from itertools import product
 from pathlib import Path
-from xml.etree import ElementTree as Xml
 
 import h5py
 import numpy as np
@@ -22,7 +21,6 @@ from lab.base.errors import LabError
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.recording import open_recording
-from lab.recording.xdmf import write_xdmf
 from lab.runs.checkpoint import Checkpoint
 from lab.runs.runner import run_preset
 from lab.sweeps import report as sweep_report
@@ -32,7 +30,6 @@ from lab.sweeps.report import numeric, write_report
 from lab.sweeps.resume import resume_any
 from lab.sweeps.sweep import _plan, run_sweep
 from solvers.machine.state import Axis, without_worlds
-from tests.oracles.synthetic import frame, record
 
 ROOT = Path(__file__).parents[3]
 SMALL = {
@@ -391,44 +388,3 @@ def test_the_python_call_takes_tables_and_keys(monkeypatch):
     options = {"video": True, "plots": False, "quiet": False}
     assert calls[1:] == [(("shaking/sway", {"run.repeats": 12}, "out"), options)]
     assert callable(lab.sweep) and callable(lab.resume)  # no module of the same name has taken their place
-
-
-def test_xdmf_refers_to_the_recorded_data(tmp_path):
-    radius = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
-    rows = [frame(0.1 * k, 2, 3, position=np.random.default_rng(k).random((2, 3, 2))) for k in range(4)]
-    centre = np.zeros((1, 2, 2))
-    record(tmp_path, np.zeros(1), pose=np.zeros((1, 3)), centre=centre, frames=rows, radius=radius)
-    with open_recording(tmp_path) as recording:
-        root = Xml.parse(write_xdmf(recording)).getroot()
-        times = list(recording.frames["time"][:])
-    courses = root.findall("Domain/Grid")
-    assert [course.get("CollectionType") for course in courses] == ["Temporal"] * 2
-    with h5py.File(tmp_path / "recording.h5", "r") as file:
-        for world, course in enumerate(courses):
-            grids = course.findall("Grid")
-            assert [float(grid.find("Time").get("Value")) for grid in grids] == times
-            for k, grid in enumerate(grids):
-                assert {item.get("Name") for item in grid.findall("Attribute")} == {
-                    "radius",
-                    "velocity",
-                    "angle",
-                    "spin",
-                }
-                np.testing.assert_array_equal(
-                    slab(tmp_path, file, grid.find("Geometry")), file["frames/position"][k, world]
-                )
-                np.testing.assert_array_equal(slab(tmp_path, file, grid.find("Attribute")), radius[world])
-
-
-def slab(folder, file, parent):
-    """What a reader of XDMF gets from a HyperSlab."""
-    item = parent.find("DataItem")
-    table, source = item.findall("DataItem")
-    name, path = source.text.split(":")
-    assert (folder / name).exists()
-    data = file[path]
-    assert tuple(map(int, source.get("Dimensions").split())) == data.shape
-    assert int(source.get("Precision")) == data.dtype.itemsize
-    begin, stride, count = np.array(table.text.split(), int).reshape(tuple(map(int, table.get("Dimensions").split())))
-    picked = data[tuple(slice(b, b + s * c, s) for b, s, c in zip(begin, stride, count, strict=True))]
-    return picked.reshape(tuple(map(int, item.get("Dimensions").split())))

@@ -1,21 +1,18 @@
 """Replays, resumptions and descriptions of recordings by strangers."""
 
 import json
-import tracemalloc
-from xml.etree import ElementTree
 
 import h5py
 import numpy as np
 import pytest
 
 from lab.preset.find import load
-from lab.recording import Recorder, open_recording
-from lab.recording.xdmf import write_xdmf
+from lab.recording import Recorder
 from lab.runs.run import prepare
 from lab.view.live import steerable
 from tests.lab.preset.test_malformed import SMALL, call, copied, refused
 from tests.lab.recording.test_trust_recordings import sound  # noqa: F401 (a fixture)
-from tests.oracles.synthetic import frame, recorder, sample
+from tests.oracles.synthetic import frame, sample
 from tests.oracles.tampering import sealed
 
 
@@ -103,16 +100,3 @@ def test_a_recording_that_does_not_match_its_preset_is_not_continued(sound, tmp_
     before = (folder / "recording.h5").read_bytes()
     assert "does not belong to the preset in it" in refused(call("resume", folder, "--quiet", "--no-video"))
     assert (folder / "recording.h5").read_bytes() == before
-
-
-def test_an_xdmf_file_takes_no_more_memory_for_more_frames(tmp_path):
-    with recorder(tmp_path, count=1) as run:
-        for k in range(200):
-            run.frame(frame(0.01 * k, count=1))
-    with open_recording(tmp_path) as recording:
-        tracemalloc.start()
-        path = write_xdmf(recording)
-        peak = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-    assert len(ElementTree.parse(path).findall(".//Time")) == 200
-    assert peak < 1_000_000  # bytes; a tree of all takes some 10 kB a frame
