@@ -1,7 +1,7 @@
 """GSD, the file format of HOOMD-blue, which OVITO reads.
 
 Source: the GSD schema "hoomd", version 1.4 (Glaser and others; gsd.readthedocs.io), written by the library gsd. Lengths
-are in m. Corners of walls, parts, hull and waterline are particles of these types, and bonds of the same names join them.
+are in m. Corners of walls, parts, hull and waterline are particles of these types; bonds of the same names join them.
 """
 
 from __future__ import annotations

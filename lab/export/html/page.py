@@ -107,9 +107,10 @@ def _page(stage: Stage, scene: dict, note: str, numbers: Sequence[tuple[str, str
         loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     data = json.dumps(scene, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    when = one_line(recording.created)[:16].replace("T", " ")
     return loader.get_template("page.html.j2").render(
         title=heading(stage.title),
-        about=f"{one_line(recording.name)} · {one_line(recording.created)[:16].replace('T', ' ')} · Cargo Shift Lab {recording.version}",
+        about=f"{one_line(recording.name)} · {when} · Cargo Shift Lab {recording.version}",
         note=note,
         numbers=numbers,
         rule=RULE.partition(":")[0].replace("`", "") + ".",

@@ -13,7 +13,7 @@ function paintSea(context, view, shape, at) {
   const cell = shape.cells[0], first = cell[0], last = cell[cell.length - 1];
   context.beginPath();
   context.moveTo(-10, at[3 * first + 1]);
-  trace2(context, at, cell);
+  for (const k of cell) context.lineTo(at[3 * k], at[3 * k + 1]);
   context.lineTo(view.width + 10, at[3 * last + 1]);
   context.strokeStyle = SURFACE;
   context.lineWidth = 1.5;
@@ -22,10 +22,6 @@ function paintSea(context, view, shape, at) {
   context.lineTo(-10, view.height + 10);
   context.fillStyle = SEA;
   context.fill();
-}
-
-function trace2(context, at, cell) {
-  for (const k of cell) context.lineTo(at[3 * k], at[3 * k + 1]);
 }
 
 function paintShape(context, shape, at) {
@@ -40,6 +36,17 @@ function paintShape(context, shape, at) {
   context.stroke();
 }
 
+// What closed lines of parts bound: solid bodies, and the walls of hulls between their outlines and their rooms.
+function paintSolid(context, shape, at) {
+  context.beginPath();
+  for (const cell of shape.cells) {
+    const a = cell[0], b = cell[cell.length - 1];
+    if (cell.length > 3 && Math.hypot(at[3 * a] - at[3 * b], at[3 * a + 1] - at[3 * b + 1]) < 1e-3) trace(context, at, cell);
+  }
+  context.fillStyle = "#b3bac1";
+  context.fill("evenodd");
+}
+
 // The inside of the tank: the outline that its edges leave, whose open ones are closed for it.
 function paintHold(context, shape, at) {
   context.beginPath();
@@ -52,7 +59,7 @@ function paintHold(context, shape, at) {
 function paintDiscs(context, view, cloud, at, chosen, frame, share) {
   const [which, colours] = colouring(cloud, chosen, frame, share), count = which.length;
   const wet = cloud.name === "water" || cloud.name === "air" || cloud.name === "bulk";
-  const grown = wet ? 1.15 : 1; // no gaps in what flows
+  const grown = wet ? 1.27 : 1; // no gaps in what flows
   const angle = cloud.angle ? valuesAt(cloud.angle, frame, share, cloud.angleNow) : null;
   const marks = [];
   for (let c = 0; c < colours.length; c++) {
@@ -105,9 +112,11 @@ function paintPlane(context, scene, view, look, frame, share) {
     else if (name === "waterline") paintSea(context, view, shapes[name], at[name]);
     else paintShape(context, shapes[name], at[name]);
   }
-  for (const cloud of scene.clouds) {
+  const last = ["grains", "fixed"]; // over what flows
+  for (const cloud of [...scene.clouds].sort((a, b) => last.includes(a.name) - last.includes(b.name))) {
     const seen = project(view, 2, valuesAt(cloud.stream, frame, share, cloud.now), cloud.seen);
     paintDiscs(context, view, cloud, seen, look.colour, frame, share);
   }
+  if (shapes.parts) paintSolid(context, shapes.parts, at.parts);
   for (const name of ["tank", "parts"]) if (shapes[name]) paintShape(context, shapes[name], at[name]);
 }

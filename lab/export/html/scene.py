@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 MOST_RAW = 60_000_000  # bytes of numbers before they are packed
 USUAL_RANGE = 0.5, 99.5  # percentiles between which a colour runs
+SAMPLED, MANY = 60, 400  # pictures that are looked at for a box; points of which the farthest may be left out
 CORNERS = 40  # of an irregular outline
 SHARP = 0.95  # cosine between faces, below which the edge between them is drawn
 PLAIN = {"id", "kind", "radius", "volume", "angle", "spin", "velocity"}  # no colours
@@ -111,26 +112,25 @@ class Reel:
         return {"name": name, "filled": first.filled, "cells": cells, "edges": edges, "place": quantised(places)}
 
     def _box(self, stance: np.ndarray, picked: slice) -> dict[str, list[list[float]]]:
-        """Lower and upper corner (m) of all but the sea, in both frames of reference."""
-        inside, outside = [], []
+        """Lower and upper corner (m) of all but the sea and the few particles that are far off, in both frames."""
         shapes = {name: one[picked] for name, one in self.shapes.items() if name != "waterline"}
-        for k, one in enumerate(stance):
-            points = [shape[k].points for shape in shapes.values()]
-            for name, values in self.clouds.items():
-                place, far = values["place"][picked][k], self.stage.given(name)["radius"].max()
-                near = place[np.isfinite(place).all(axis=1)]
-                if len(near):
-                    low, high = np.percentile(near, USUAL_RANGE, axis=0)
-                    ends = np.array([low - far, high + far])
-                    points.append(np.column_stack([ends, np.zeros((2, 3 - self.axes))]))
-            joined = np.concatenate(points)
-            inside.append((joined.min(axis=0), joined.max(axis=0)))
-            moved = carried(_corners(*inside[-1]) if len(points) > len(shapes) else joined, one)
-            outside.append((moved.min(axis=0), moved.max(axis=0)))
-        found = {"tank": np.array(inside), "earth": np.array(outside)}
+        ends: dict[str, list[np.ndarray]] = {"tank": [], "earth": []}
+        for k in range(0, len(stance), max(1, len(stance) // SAMPLED)):
+            walls = [shape[k].points for shape in shapes.values()]
+            clouds = [self._near(values["place"][picked][k]) for values in self.clouds.values()]
+            for name in ends:
+                for points in (*walls, *clouds):
+                    moved = carried(points, stance[k]) if name == "earth" else points
+                    if len(moved):
+                        ends[name].append(np.percentile(moved, USUAL_RANGE if len(moved) > MANY else (0, 100), axis=0))
         return {
-            name: [ends[:, 0].min(axis=0).tolist(), ends[:, 1].max(axis=0).tolist()] for name, ends in found.items()
+            name: [np.min(one, axis=(0, 1)).tolist(), np.max(one, axis=(0, 1)).tolist()] for name, one in ends.items()
         }
+
+    def _near(self, place: np.ndarray) -> np.ndarray:
+        """The places (k, 3) m of particles that are there."""
+        there = place[np.isfinite(place).all(axis=1)].astype(float)
+        return there if self.axes > PLANE else np.column_stack([there, np.zeros(len(there))])
 
 
 def first_stride(stage: Stage, rows: Sequence[int]) -> int:
@@ -158,11 +158,6 @@ def sharp_edges(shape: Shape) -> list[list[int]]:
                 if known[2] != number:
                     known[3], known[4] = number, int(normals[known[2]] @ normals[number] < SHARP)
     return list(found.values())
-
-
-def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """The corners (8, 3) of a box."""
-    return np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
 
 
 def _house(stage: Stage) -> np.ndarray | None:
