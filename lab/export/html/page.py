@@ -39,9 +39,10 @@ def write_html(stage: Stage, rows: Sequence[int], path: Path, reach: Callable[[i
         note = _note(stage, len(rows[::stride]))
         text = _page(stage, reel.scene(stride) | about, note, numbers)
         size = len(text.encode())
-        if size <= MOST_BYTES or len(rows) <= 2 * stride:
+        more = min(stride + max(1, round(stride * (size / MOST_BYTES - 1.0))), max(stride, len(rows) - 1))
+        if size <= MOST_BYTES or more == stride:
             break
-        stride += max(1, round(stride * (size / MOST_BYTES - 1.0)))
+        stride = more
     path.write_text(text, encoding="utf-8")
 
 
