@@ -173,6 +173,17 @@ def test_the_staggered_coupling_is_read_under_its_earlier_name(in_file, tmp_path
     assert from_table(kept) == read
 
 
+@pytest.mark.parametrize("in_file", [True, False])
+def test_a_key_that_is_gone_is_left_out_and_said_to_be(in_file, tmp_path):
+    with pytest.warns(formats.OldFormat, match=r"record.xdmf: is not read any more: ParaView opens .* leave it out"):
+        said = "[record]\nxdmf = true\n" if in_file else ""
+        read = load(written(tmp_path, BARGE + said), {} if in_file else {"record.xdmf": True}).resolved
+    assert read == load(written(tmp_path, BARGE)).resolved
+    kept = to_table(read)
+    kept["record"]["xdmf"] = True
+    assert from_table(kept) == read
+
+
 OLD = {
     "tank": {"outline": [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1]], "open_edges": [1], "roughness": None},
     "water": {"density": 1025.0, "depth": None},
