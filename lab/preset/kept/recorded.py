@@ -44,7 +44,7 @@ def content(table: object) -> Content:
 
 def _without_own_words(kept: Mapping) -> Mapping:
     """The table; of one with plug-ins, whose laws and colours only they know, without these."""
-    if not kept.get("plugins"):
+    if not isinstance(kept, Mapping) or not kept.get("plugins"):
         return kept
     return {**kept, "contact": {}, "video": {**kept.get("video", {}), "colour": None}}
 

@@ -20,8 +20,8 @@ BOX, HOLD = "bulk/box", "bulk/hold"
         (BOX, {"bulk.repose": "20 deg"}, r"bulk\.repose: give either an angle of repose or a friction"),
         (BOX, {"bulk.wall_friction": 0.5}, r"bulk\.wall_friction: 0\.5 is more than .*set bulk\.rough = true"),
         (BOX, {"bulk.wall_friction": 0.1, "bulk.rough": True}, r"bulk\.rough: .*leave bulk\.wall_friction out"),
-        (BOX, {"bulk.fast_friction": 0.2}, r"bulk\.fast_friction: is less than the 0\.31"),
-        (BOX, {"bulk.start_friction": 0.2}, r"bulk\.start_friction: is less than the 0\.31"),
+        (BOX, {"bulk.fast_friction": 0.2}, r"bulk\.fast_friction: is less than the 0\.32"),
+        (BOX, {"bulk.start_friction": 0.2}, r"bulk\.start_friction: is less than the 0\.32"),
         (BOX, {"bulk.depth": "0.9 m"}, r"bulk\.spacing: the bed is .* deep, less than 2 cells"),
         (BOX, {"bulk.depth": "17 m"}, r"bulk\.depth: the tank is 16 m high"),
         (BOX, {"bulk.depth": "-1 m"}, r"bulk\.depth"),
@@ -61,7 +61,7 @@ def test_a_scene_has_the_mass_and_the_friction_that_were_asked_for():
     scene, _ = build(preset)
     bulk = scene.of(Bulk)
     assert bulk.mass == pytest.approx(850.0 * 24.0 * 9.0)
-    assert bulk.material.friction == 0.31 and bulk.material.wall_friction == 0.31
+    assert bulk.material.friction == 0.32 and bulk.material.wall_friction == 0.31
     assert bulk.material.young == pytest.approx(50.0 * 850.0 * 9.81 * 9.0)
     assert scene.step <= scene.step_limits()[0].step
     assert np.ptp(bulk.points["position"][0, :, 1]) < 9.0
