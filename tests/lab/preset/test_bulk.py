@@ -61,7 +61,7 @@ def test_a_scene_has_the_mass_and_the_friction_that_were_asked_for():
     scene, _ = build(preset)
     bulk = scene.of(Bulk)
     assert bulk.mass == pytest.approx(850.0 * 24.0 * 9.0)
-    assert bulk.material.friction == 0.32 and bulk.material.wall_friction == 0.31
+    assert bulk.material.friction == 0.32 and bulk.material.wall_friction == 0.32
     assert bulk.material.young == pytest.approx(50.0 * 850.0 * 9.81 * 9.0)
     assert scene.step <= scene.step_limits()[0].step
     assert np.ptp(bulk.points["position"][0, :, 1]) < 9.0
