@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         colour,
         explain,
         export,
+        fields,
         flood,
         hull,
         law,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
         run,
         sweep,
         view,
+        water_at,
     )
 
 __all__ = [
@@ -42,6 +44,7 @@ __all__ = [
     "colour",
     "explain",
     "export",
+    "fields",
     "flood",
     "hull",
     "law",
@@ -55,6 +58,7 @@ __all__ = [
     "run",
     "sweep",
     "view",
+    "water_at",
 ]
 
 

@@ -1,6 +1,6 @@
 """What `cargolab` offers: each call hands on to the room of `lab` that does it, which it loads only then."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,8 @@ from lab.base.errors import Told as Error
 from lab.preset.python.written import asked
 
 if TYPE_CHECKING:
+    import xarray
+
     from lab.naval.flooding.results import Results
     from lab.naval.hull import Hull
     from lab.recording import Recording
@@ -26,6 +28,7 @@ __all__ = [
     "colour",
     "explain",
     "export",
+    "fields",
     "flood",
     "hull",
     "law",
@@ -39,6 +42,7 @@ __all__ = [
     "run",
     "sweep",
     "view",
+    "water_at",
 ]
 
 
@@ -77,6 +81,35 @@ def open(path: Path | str, *, sound: bool = False) -> "Recording":
     from lab.recording import open_recording
 
     return open_recording(path, sound=sound)
+
+
+def fields(
+    of: "Recording | Simulation | Path | str",
+    frame: int = -1,
+    world: int = 0,
+    *,
+    spacing: float | None = None,
+    width: float | None = None,
+) -> "xarray.Dataset":
+    """Porosity, density, velocity, stress and pressure of a bed on a grid: `cargolab.fields("renders/tilting/quick")`.
+
+    By coarse graining over Lucy's function of the half width `width` (m; 1.5 mean diameters without it), at nodes
+    `spacing` apart. frame: of a recording, the last one without it; of a simulation it is the present state.
+    """
+    from lab.recording.fields.reading import fields_of, recorded_bed
+
+    if isinstance(of, Simulation):
+        return fields_of(of.bed(world), spacing, width)
+    return fields_of(recorded_bed(open(of) if isinstance(of, str | Path) else of, frame, world), spacing, width)
+
+
+def water_at(
+    of: "Recording | Path | str", points: "Sequence[Sequence[float]]", frame: int = -1, world: int = 0
+) -> "xarray.Dataset":
+    """Pressure and velocity of the water at points (k, axes), m in the tank's frame; NaN where there is no water."""
+    from lab.recording.fields.reading import water_at as found
+
+    return found(open(of) if isinstance(of, str | Path) else of, points, frame, world)
 
 
 def hull(

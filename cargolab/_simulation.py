@@ -12,6 +12,7 @@ from lab.preset.python.written import asked
 
 if TYPE_CHECKING:
     from cargolab._preset import Preset
+    from lab.recording.fields.reading import Bed
     from lab.runs.runner import Result
     from lab.runs.running import Moment, Running
 
@@ -161,6 +162,13 @@ class Simulation:
         if not isinstance(key, str | Mapping):
             raise LabError("set: a key and its value are needed, or a table of keys.")
         self._running.alter({key: value} if isinstance(key, str) else dict(key))
+
+    def bed(self, world: int = 0) -> "Bed":
+        """The grains of a bed now and the forces between them, for `cargolab.fields`."""
+        from lab.recording.fields.reading import bed_now
+
+        running = self._running
+        return bed_now(running.loaded.resolved, running.simulation, running.snapshot(), world)
 
     def save(self) -> "Moment":
         """The present state, for `restore`."""

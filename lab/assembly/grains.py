@@ -194,6 +194,12 @@ def _plates(preset: Preset) -> list[np.ndarray]:
     return [np.array(part.line) for part in preset.parts.values() if part.tank == preset.grains.room]
 
 
+def grain_masses(preset: Preset, radius: np.ndarray, kind: np.ndarray) -> np.ndarray:
+    """Masses (n,) kg of grains of these radii (n,) m and kinds (n,): of spheres, also for discs and outlines."""
+    densities = np.array([preset.material.density, *(other.material.density for other in preset.others.values())])
+    return 4.0 / 3.0 * np.pi * radius**3 * densities[kind]
+
+
 def _kinds(preset: Preset, kind: np.ndarray | None) -> dict:
     """The kinds of grains and their materials; empty if there is only one kind."""
     if kind is None:

@@ -17,7 +17,7 @@ METHODS = {
     "Preset": {"name", "title", "text", "values", "quantity", "change", "changed", "schema", "keys", "cost", "explain",
                "run", "sweep", "save"},
     "Simulation": {"resume", "folder", "preset", "time", "duration", "ended", "now", "run", "every", "stop", "set",
-                   "save", "restore", "report", "close"},
+                   "bed", "save", "restore", "report", "close"},
 }  # fmt: skip
 # Frozen: a name or a parameter here is in users' scripts. Adding is fine; taking away breaks them.
 NAMES = {
@@ -31,6 +31,8 @@ NAMES = {
     "calibrate": ("preset", "target", "vary", "out", "repeats", "quiet", "cluster", "overrides"),
     "explain": ("preset", "overrides"),
     "export": ("path", "to", "out", "every", "world", "frame", "sound", "progress"),
+    "fields": ("of", "frame", "world", "spacing", "width"),
+    "water_at": ("of", "points", "frame", "world"),
     "flood": ("case", "out", "video", "overrides"),
     "hull": tuple(["file", "density", "fair", "lbp", "ap", "stations", "scale", "up", "origin", "mirror", "close"]),
     "open": ("path", "sound"),

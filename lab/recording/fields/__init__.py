@@ -1,0 +1,1 @@
+"""Fields on a grid, from grains, water and bulk at points."""
