@@ -7,6 +7,7 @@ from lab.cli.benches import bench
 from lab.cli.errors import Commands
 from lab.cli.exports import export
 from lab.cli.flooding import cross_flooding, flood
+from lab.cli.machine import cache, doctor
 from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.options import plugins_option
 from lab.cli.pictures import beside, poster, render, sheet, view
@@ -38,8 +39,10 @@ for command in (
     bed,
     bench,
     beside,
+    cache,
     calibrate,
     cross_flooding,
+    doctor,
     explain,
     export,
     flood,

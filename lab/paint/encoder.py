@@ -60,13 +60,13 @@ def join_videos(pieces: Sequence[Path], out: Path, comment: str = "") -> Path:
     joined = ("-f", "concat", "-safe", "0", "-i", f"file:{said.absolute()}", "-c", "copy", "-movflags", "+faststart")
     with replacing(out) as part:
         told = ("-metadata", f"comment={comment}", f"file:{part.absolute()}")
-        made = subprocess.run([_ffmpeg(), "-y", "-v", "error", *joined, *told], capture_output=True, text=True)
+        made = subprocess.run([ffmpeg(), "-y", "-v", "error", *joined, *told], capture_output=True, text=True)
         if made.returncode:
             raise LabError(f"{out} cannot be written: {made.stderr.strip().splitlines()[-1:]}; make room there.")
     return out
 
 
-def _ffmpeg() -> str:
+def ffmpeg() -> str:
     from imageio_ffmpeg import get_ffmpeg_exe
 
     try:
@@ -76,7 +76,7 @@ def _ffmpeg() -> str:
 
 
 def _begin(part: Path, shape: tuple[int, ...], rate: float, comment: str) -> subprocess.Popen:
-    program = _ffmpeg()
+    program = ffmpeg()
     height, width, _ = shape
     rational = str(Fraction(rate).limit_denominator())
     raw = ("-f", "rawvideo", "-vcodec", "rawvideo", "-s", f"{width}x{height}", "-pix_fmt", "rgb24", "-r", rational)

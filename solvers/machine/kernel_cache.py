@@ -27,7 +27,7 @@ def provide() -> None:
     global _lacking
     if os.name != "posix":  # elsewhere Taichi has a folder of its own
         return
-    folder = _usual()
+    folder = usual_folder()
     if folder and _usable(folder):
         _unlock(folder)
         return
@@ -49,7 +49,7 @@ def missing() -> bool:
     return os.environ.get("XDG_CACHE_HOME") == NOWHERE
 
 
-def _usual() -> Path | None:
+def usual_folder() -> Path | None:
     """The folder that Taichi uses by default; None if there is none."""
     base, home = os.environ.get("XDG_CACHE_HOME"), os.environ.get("HOME")
     if base == NOWHERE or not (base or home):

@@ -92,10 +92,10 @@ def choose_arch(wanted: str, precision: str, water: bool = False, particles: int
         least = WORTH_OF_WATER if water else WORTH_OF_GRAINS
         if particles < least * cores_of_machine():  # processes side by side have one device as well
             return "cpu"
-        if _cuda():
+        if has_cuda():
             return "cuda"
-        return "vulkan" if precision == "f32" and not water and _real_vulkan() else "cpu"
-    if wanted == "cuda" and not _cuda():
+        return "vulkan" if precision == "f32" and not water and has_vulkan() else "cpu"
+    if wanted == "cuda" and not has_cuda():
         raise Unavailable("run.arch: there is no CUDA device here; use cpu or auto.")
     if wanted == "vulkan":
         if water:
@@ -107,16 +107,16 @@ def choose_arch(wanted: str, precision: str, water: bool = False, particles: int
     return wanted
 
 
-def _cuda() -> bool:
+def has_cuda() -> bool:
     """Whether there is a CUDA driver; checked here first, since Taichi prints a warning if there is none."""
     try:
         ctypes.CDLL("nvcuda.dll" if sys.platform == "win32" else "libcuda.so.1")
     except OSError:
         return False
-    return bool(ti._lib.core.with_cuda())
+    return bool(ti._lib.core.withhas_cuda())
 
 
-def _real_vulkan() -> bool:
+def has_vulkan() -> bool:
     """Whether there is Vulkan with a graphics device behind it."""
     device = not sys.platform.startswith("linux") or bool(glob("/dev/dri/renderD*"))
     return device and bool(ti._lib.core.with_vulkan())

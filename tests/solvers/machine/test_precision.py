@@ -216,7 +216,7 @@ def test_a_software_vulkan_agrees_with_the_processor():
 
 @pytest.mark.parametrize(("arch", "precision"), [("cuda", "f64"), ("vulkan", "f64"), ("vulkan", "mixed")])
 def test_missing_devices_are_reported_in_one_sentence(monkeypatch, arch, precision):
-    monkeypatch.setattr(runtime, "_cuda", lambda: False)
+    monkeypatch.setattr(runtime, "has_cuda", lambda: False)
     with pytest.raises(Unavailable, match=rf"^run\.arch: [^.]*{'CUDA' if arch == 'cuda' else '32 bits'}.*\.$") as error:
         Simulation(scene(precision), start()[0], 1, arch=arch)
     assert "\n" not in str(error.value)
@@ -224,8 +224,8 @@ def test_missing_devices_are_reported_in_one_sentence(monkeypatch, arch, precisi
 
 def test_water_has_no_vulkan(monkeypatch):
     """A real device is passed over by auto; asked for, it is refused before anything is compiled."""
-    monkeypatch.setattr(runtime, "_cuda", lambda: False)
-    monkeypatch.setattr(runtime, "_real_vulkan", lambda: True)
+    monkeypatch.setattr(runtime, "has_cuda", lambda: False)
+    monkeypatch.setattr(runtime, "has_vulkan", lambda: True)
     many = runtime.WORTH_OF_GRAINS * runtime.cores_of_machine()
     assert runtime.choose_arch("auto", "f32", water=True, particles=many) == "cpu"
     assert runtime.choose_arch("auto", "f32", particles=many) == "vulkan"
@@ -235,7 +235,7 @@ def test_water_has_no_vulkan(monkeypatch):
 
 def test_a_device_is_taken_for_many_particles_only(monkeypatch):
     """Or if it is asked for: a small run waits for it longer than for the processor."""
-    monkeypatch.setattr(runtime, "_cuda", lambda: True)
+    monkeypatch.setattr(runtime, "has_cuda", lambda: True)
     monkeypatch.setattr(runtime, "cores_of_machine", lambda: 4)
     monkeypatch.setattr(runtime, "_most_cores", 2**31)
     for water, least in ((False, runtime.WORTH_OF_GRAINS), (True, runtime.WORTH_OF_WATER)):

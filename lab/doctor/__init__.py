@@ -1,0 +1,1 @@
+"""What this machine has, what follows for the lab, and what the lab keeps on it."""
