@@ -1,4 +1,4 @@
-"""Commands on the keys of presets."""
+"""Commands on what presets are made of: their keys, and outlines of grains."""
 
 from pathlib import Path
 
@@ -37,3 +37,29 @@ def schema(page: bool, out: Path | None) -> None:
 
         write_keys()
     click.echo(out if page else f"{out}; a preset beside it names it in its first line: #:schema ./{out.name}")
+
+
+@click.command()
+@click.argument("picture", type=FilePath(path_type=Path))
+@click.option("--width", metavar="LENGTH", help="Width of the grain, e.g. '6 mm'.  [default: in pixels]")
+@click.option("--points", type=int, default=120, show_default=True, metavar="N", help="Points of the outline.")
+@click.option(
+    "--out",
+    type=FilePath(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="The CSV file.  [default: the picture's name with .csv]",
+)
+def outline(picture: Path, width: str | None, points: int, out: Path | None) -> None:
+    """Trace the outline of a grain in PICTURE, for `shapes.NAME.contour` of a preset.
+
+    \b
+    cargolab outline bean.jpg --width "12 mm"
+    The grain must stand out from a plain ground and lie within the picture; the largest thing in it is taken.
+    """
+    from lab.assembly.traced import trace
+    from lab.preset.units import parse, show
+
+    found = trace(picture, None if width is None else parse(width, "m"), points)
+    path = found.write(out or picture.with_suffix(".csv"))
+    size = show(found.equal, "m") if found.in_metres else f"{found.equal:.4g} pixels"
+    click.echo(f"{path}; the disc of equal area has a diameter of {size}")
