@@ -38,7 +38,7 @@ FLOORS = {  # from the ground up: a room imports those before it
         "export",
         *("runs", "sweeps", "view", "studies", "doctor", "cli"),
     ),
-    "cargolab": ("_hidden", "_preset", "_simulation", "_plugins", "_calls"),
+    "cargolab": ("_hidden", "_xarray", "_preset", "_simulation", "_plugins", "_calls"),
     "benchmarks": (
         *("aside", "devices", "remembered", "bench", "peers", "speed", "accuracy", "stability", "water"),
         *("outlines", "gpu"),

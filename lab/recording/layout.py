@@ -58,6 +58,8 @@ TABLES = "series", "frames", "steering"
 PARTS = "tank/parts"
 GROUPS = ("preset", *OF_MATTERS, "tank", SHAPES, *TABLES, CHECKS)  # all that is read of a file, and checked before
 
+# Arbitrary but distinct sizes, to compare shapes
+SIZES = dict(zip(OWNERS, (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43), strict=True))
 LONGEST_LABEL = 500  # letters
 CHUNK_BYTES = 2**19  # approximate size of a chunk
 CHUNK_ROWS = 1024
@@ -213,6 +215,22 @@ def described(data: h5py.Dataset) -> Quantity:
     found = Quantity(name, unit, components, label, mean, per or "", never, plot)
     if per is None or axes != found.axes or len(found.units) != found.width:
         raise ValueError(f"{data.name[1:]} is not what the lab writes there")
+    return found
+
+
+def quantities_of(group: h5py.Group, known: tuple[Quantity, ...]) -> dict[str, Quantity]:
+    """The quantities of a table by name as the file describes them, including any that this version does not know.
+
+    Raises ValueError or KeyError if a known one is missing or has another shape or data type.
+    """
+    found, stored = {}, older.stored(group)
+    known = tuple(quantity for quantity in known if quantity.name in stored or quantity.name not in older.ADDED)
+    for name in (*(quantity.name for quantity in known), *stored):
+        if name not in found:
+            found[name] = described(group[stored.get(name, name)])
+    for quantity in known:
+        if rows_of([quantity], SIZES) != rows_of([found[quantity.name]], SIZES):
+            raise ValueError(f"{group.name[1:]}/{quantity.name} is not what the lab writes there")
     return found
 
 

@@ -17,8 +17,10 @@ from typing import BinaryIO, TypeVar
 import h5py
 
 from lab.base.errors import LabError
-from lab.recording import superblock
-from lab.recording.layout import ATTEMPTS, RETRY_DELAY
+from lab.base.trust import format_of
+from lab.recording import older, superblock
+from lab.recording.layout import ATTEMPTS, FORMAT, RETRY_DELAY
+from lab.recording.tables import reading
 
 try:
     import fcntl
@@ -40,6 +42,30 @@ Opened = TypeVar("Opened")
 def create(path: Path) -> h5py.File:
     """Create a file, replacing one of the same name."""
     return _with_or_without_locks(lambda lock: h5py.File(path, "w", libver=(VERSION, VERSION), locking=lock))
+
+
+def opened(path: Path) -> tuple[h5py.File, str]:
+    """The file and its format. Raises LabError."""
+    if not path.is_file():
+        raise LabError(f"{path} does not exist: name a recording or the folder of a run.")
+    try:
+        file = open_to_read(path)
+    except PermissionError as error:
+        raise LabError(f"{path} may not be read: change its permissions.") from error
+    except OSError as error:
+        raise LabError(f"{path} cannot be read as a recording: it is truncated or another kind of file.") from error
+    try:
+        with reading(path):
+            form = format_of(file)
+    except LabError:
+        file.close()
+        raise
+    if form in (FORMAT, *older.FORMATS):
+        return file, form
+    file.close()
+    if form.startswith(FORMAT.split()[0]):
+        raise LabError(f"{path} was written by another version ('{form}'): record the run again.")
+    raise LabError(f"{path} is not a recording of this lab: name another file.")
 
 
 def open_to_read(path: Path) -> h5py.File:

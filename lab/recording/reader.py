@@ -6,11 +6,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 
-from lab.base.errors import LabError, Unusable
-from lab.base.trust import attributes, check_recording, finite, format_of, of_texts, text, wide
+from lab.base.errors import Unusable
+from lab.base.trust import attributes, check_recording, finite, of_texts, text, wide
 from lab.base.turn import in_turn
 from lab.preset.kept.recorded import content
 from lab.recording import older
@@ -18,21 +17,19 @@ from lab.recording.checks import Checks
 from lab.recording.layout import (
     CHECKS,
     FILE_NAME,
-    FORMAT,
     GROUPS,
     PARTS,
     TABLES,
-    described,
     names_of,
-    rows_of,
+    quantities_of,
     sizes_of,
     tables_of,
 )
-from lab.recording.opening import open_to_read
+from lab.recording.opening import opened
 from lab.recording.outlines import GROUP, read_outlines
 from lab.recording.outlines import TABLES as OF_SHAPES
 from lab.recording.tables import Frames, Series, reading
-from solvers.machine.quantity import OWNERS, Quantity
+from solvers.machine.quantity import Quantity
 
 if TYPE_CHECKING:
     import xarray
@@ -40,16 +37,14 @@ if TYPE_CHECKING:
     from lab.preset.schema import Preset
     from lab.recording.contacts.table import Contacts
 
-# Arbitrary but distinct sizes, to compare shapes
-SIZES = dict(zip(OWNERS, (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43), strict=True))
 TABLE_KINDS = dict(zip(TABLES, (Series, Frames, Series), strict=True))
 
 
 class Recording:
     """A recording opened for reading, a context manager; arrays are read on demand.
 
-    path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI; content: what of it the
-    tables follow from;
+    path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI; resolved: the same as
+    a table; content: what of it the tables follow from;
     status, created, versions, machine, step (s), wall_s, grain_steps;
     radius (W, n) m, n is 0 without grains; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
     volume (W, n) m² of the particles of water in the plane, air_volume (W, n) of those of air, n is 0 without any;
@@ -70,7 +65,7 @@ class Recording:
         if self.path.is_dir():
             self.path = self.path / FILE_NAME
         self.folder, self._again = self.path.parent, None
-        self._file, self.form = _open(self.path)
+        self._file, self.form = opened(self.path)
         with ExitStack() as otherwise, reading(self.path):
             otherwise.callback(self._file.close)
             self._checked = check_recording(self._file, GROUPS, (PARTS,))
@@ -81,8 +76,8 @@ class Recording:
             self.step, self.wall_s = float(stored["step"]), float(stored["wall_s"])
             self.grain_steps = int(stored["grain_steps"])
             self.given = self._stored("preset/given", text)
-            self._resolved = json.loads(self._stored("preset/resolved", text))
-            self.content = content(self._resolved)
+            self.resolved = json.loads(self._stored("preset/resolved", text))
+            self.content = content(self.resolved)
             self.radius, self.kind = self._grains()
             self.volume, self.air_volume, self.bulk_volume = map(self._volumes, ("water", "air", "bulk"))
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
@@ -127,7 +122,7 @@ class Recording:
 
     def _tables(self) -> dict[str, Frames]:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
-        sizes = sizes_of(self.names, self.radius, self.volume, self.air_volume, self.bulk_volume)
+        sizes = self.sizes
         wanted = tables_of(self.content, "steering" in self._file)
         found = {}
         for name, known in wanted.items():
@@ -136,7 +131,7 @@ class Recording:
                 quantities = older.quantities(group, known)
             else:
                 checks = Checks(self._file[f"{CHECKS}/{name}"])
-                quantities = _quantities(group, known)
+                quantities = quantities_of(group, known)
             found[name] = TABLE_KINDS[name](group, quantities, sizes, checks, self.path)
         return found
 
@@ -172,7 +167,12 @@ class Recording:
         from lab.preset.recorded import from_table  # loads the solvers, which arrays do not need
 
         with reading(self.path):
-            return from_table(self._resolved)
+            return from_table(self.resolved)
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """How many worlds, grains, particles, parts and gauges there are, by the owners of quantities."""
+        return sizes_of(self.names, self.radius, self.volume, self.air_volume, self.bulk_volume)
 
     @property
     def version(self) -> str:
@@ -183,6 +183,17 @@ class Recording:
     def quantities(self) -> dict[str, Quantity]:
         """The quantities of the series and of the frames, by name."""
         return {**self.series.quantities, **self.frames.quantities}
+
+    def tree(self) -> "xarray.DataTree":
+        """All that is recorded as one tree of labelled data: `tree["series"]["wall_force"]`, `tree["frames/position"]`.
+
+        Nodes are series, frames, tank and each matter; axes and coordinates as of `labelled`. What is in the tables is
+        read, and checked, where it is asked for, so the recording must stay open. Raises LabError then for rows that
+        are damaged.
+        """
+        from lab.recording.tree.nodes import tree
+
+        return tree(self)
 
     def labelled(self, frames: slice | None = None) -> "xarray.Dataset":
         """The series, or the given frames, as arrays with named axes, units and labels.
@@ -248,6 +259,16 @@ class Recording:
             self._again = None
         self._file.close()
 
+    def __repr__(self) -> str:
+        from lab.recording.tree.shown import line
+
+        return line(self)
+
+    def _repr_html_(self) -> str:
+        from lab.recording.tree.shown import html
+
+        return html(self)
+
     def __enter__(self) -> "Recording":
         return self
 
@@ -258,43 +279,3 @@ class Recording:
 def open_recording(path: Path | str, *, sound: bool = False) -> Recording:
     """Open a recording by its file or its run's folder. Raises LabError (see `Recording`)."""
     return Recording(path, sound=sound)
-
-
-def _quantities(group: h5py.Group, known: tuple[Quantity, ...]) -> dict[str, Quantity]:
-    """The quantities of a table by name as the file describes them, including any that this version does not know.
-
-    Raises ValueError or KeyError if a known one is missing or has another shape or data type.
-    """
-    found, stored = {}, older.stored(group)
-    known = tuple(quantity for quantity in known if quantity.name in stored or quantity.name not in older.ADDED)
-    for name in (*(quantity.name for quantity in known), *stored):
-        if name not in found:
-            found[name] = described(group[stored.get(name, name)])
-    for quantity in known:
-        if rows_of([quantity], SIZES) != rows_of([found[quantity.name]], SIZES):
-            raise ValueError(f"{group.name[1:]}/{quantity.name} is not what the lab writes there")
-    return found
-
-
-def _open(path: Path) -> tuple[h5py.File, str]:
-    """The file and its format. Raises LabError."""
-    if not path.is_file():
-        raise LabError(f"{path} does not exist: name a recording or the folder of a run.")
-    try:
-        file = open_to_read(path)
-    except PermissionError as error:
-        raise LabError(f"{path} may not be read: change its permissions.") from error
-    except OSError as error:
-        raise LabError(f"{path} cannot be read as a recording: it is truncated or another kind of file.") from error
-    try:
-        with reading(path):
-            form = format_of(file)
-    except LabError:
-        file.close()
-        raise
-    if form in (FORMAT, *older.FORMATS):
-        return file, form
-    file.close()
-    if form.startswith(FORMAT.split()[0]):
-        raise LabError(f"{path} was written by another version ('{form}'): record the run again.")
-    raise LabError(f"{path} is not a recording of this lab: name another file.")

@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from lab.base.errors import NotRecorded, Unusable
+from lab.base.errors import LabError, NotRecorded, Unusable
 from lab.base.trust import check_room
 from lab.preset.units import quoted, show
 from lab.recording import older
@@ -62,7 +62,13 @@ class Frames(Mapping):
         if name not in self._columns:
             known = ", ".join(self._columns)
             raise NotRecorded(f"{self._path}: no {quoted(name)} in its {self._table}, but {known}{recorded_by(name)}")
+        self.check_open()
         return Column(self, self._columns[name])
+
+    def check_open(self) -> None:
+        """Raise LabError once the file has been closed."""
+        if not all(self._columns.values()):
+            raise LabError(f"{self._path} has been closed: open it again to read more of it.")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.quantities)
@@ -132,6 +138,7 @@ class Column:
 
     def __getitem__(self, index: int | slice | tuple) -> np.ndarray:
         first, *others = index if isinstance(index, tuple) else (index,)
+        self._table.check_open()
         try:
             many = isinstance(first, slice)
             row = None if many else range(len(self))[first]
