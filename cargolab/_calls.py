@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from lab.naval.hull import Hull
     from lab.recording import Recording
     from lab.sweeps.calibration_report import Calibration
+    from lab.sweeps.result import SweepResult
 
 __all__ = [
     "Error",
@@ -73,11 +74,17 @@ def calibrate(
     return calibrated(name, target, vary, given, out, quiet=quiet, cluster=cluster)
 
 
-def open(path: Path | str, *, sound: bool = False) -> "Recording":
-    """Open the recording in a run's folder, or its file, for reading: `series`, `frames`, `labelled()`.
+def open(path: Path | str, *, sound: bool = False) -> "Recording | SweepResult":
+    """Open the recording in a run's folder, or its file, for reading: `series`, `frames`, `tree()`.
 
-    sound: leave out the rows from the first damaged one on.
+    sound: leave out the rows from the first damaged one on. Of a sweep's folder it is the sweep's result: `dataset()`.
     """
+    from lab.sweeps.request import SWEEP
+
+    if (Path(path) / SWEEP).is_file():
+        from lab.sweeps.sweep import open_sweep
+
+        return open_sweep(path)
     from lab.recording import open_recording
 
     return open_recording(path, sound=sound)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from lab.preset.find import LoadedPreset
     from lab.report.cost import Cost
     from lab.runs.runner import Result
-    from lab.sweeps.sweep import SweepResult
+    from lab.sweeps.result import SweepResult
 
 
 class Preset:

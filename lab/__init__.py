@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from cargolab._preset import Preset
     from lab.runs.runner import Result
     from lab.sweeps.calibration_report import Calibration
-    from lab.sweeps.sweep import SweepResult
+    from lab.sweeps.result import SweepResult
 
 __version__ = "0.2.0"
 

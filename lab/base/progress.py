@@ -1,4 +1,7 @@
-"""Progress messages: a bar with the remaining time in a terminal, otherwise a line per stage and every half minute."""
+"""Progress messages: a bar with the remaining time in a terminal or a notebook.
+
+Elsewhere there is a line a stage and one every half minute.
+"""
 
 import sys
 import time
@@ -11,6 +14,7 @@ from rich.progress import Progress as Bar
 
 from lab.base.caches import lacking
 from lab.base.costs import Costs
+from lab.base.notebook.cell import Cell, in_notebook
 from lab.base.text import one_line
 
 if TYPE_CHECKING:
@@ -27,7 +31,9 @@ class Progress:
 
     def __init__(self, quiet: bool):
         self.console = Console(stderr=True, quiet=quiet, highlight=False, markup=False, emoji=False)
-        self.live = sys.stderr.isatty() and not quiet
+        self.cell = Cell() if in_notebook() and not quiet else None
+        on_terminal = sys.stderr.isatty() and not quiet and self.cell is None
+        self.live = on_terminal or self.cell is not None
         columns = (
             TextColumn("{task.description:<9}"),
             BarColumn(),
@@ -36,7 +42,7 @@ class Progress:
             TextColumn("left"),
             TimeRemainingColumn(),
         )
-        self.bar = Bar(*columns, console=self.console, disable=not self.live, speed_estimate_period=600.0)
+        self.bar = Bar(*columns, console=self.console, disable=not on_terminal, speed_estimate_period=600.0)
         self.task, self.total, self.cost = None, None, 0.0
         self.stage, self.begun_stage, self.told = "", 0.0, 0.0
         self.waiting: Timer | None = None
@@ -54,6 +60,7 @@ class Progress:
     def __exit__(self, *_) -> None:
         self._heard()
         self.bar.stop()
+        self._draw(at_once=True)
 
     def begin_whole(self, name: str, total: float, done: float) -> None:
         """Start an overall bar of size `total`, of which `done` is done; later stages add their `cost` to it."""
@@ -75,7 +82,10 @@ class Progress:
         if not (self.live or again):
             self.say(f"{stage} …")
             self._excuse(f"{stage}: {COMPILES}")
+        if self.cell is not None:
+            self._remove_ended()
         self.task, self.total, self.cost = self.bar.add_task(stage, total=total), total, cost
+        self._draw(at_once=True)
 
     def reach(self, done: float) -> None:
         """Update the bar: `done` of the stage's total. In a log a line says so every half minute."""
@@ -86,6 +96,7 @@ class Progress:
             self.say(f"{self.stage}: {100 * done / self.total:.0f} % after {_span(self.told - self.begun_stage)}")
         if self.whole is not None and self.total:
             self.bar.update(self.whole, completed=self.done + self.cost * min(done / self.total, 1.0))
+        self._draw()
 
     def _excuse(self, sentence: str) -> None:
         """Say a sentence unless the stage tells something soon."""
@@ -112,6 +123,7 @@ class Progress:
     def count(self, done: int, total: int) -> None:
         """Update a stage whose total was not known at its start."""
         self.bar.update(self.task, completed=done, total=total)
+        self._draw()
 
     def finish(self) -> None:
         """End the stage, possibly before its total."""
@@ -121,21 +133,45 @@ class Progress:
             self.bar.update(self.whole, completed=self.done)
             self.bar.remove_task(self.task)
         elif self.live:
-            self.bar.update(self.task, completed=self.bar.tasks[self.task].total)
+            task = next(one for one in self.bar.tasks if one.id == self.task)
+            self.bar.update(self.task, completed=task.total)
+        self._draw()
 
     def warn(self, sentence: str) -> None:
         """Print a warning now and keep it for the summary."""
         self.warnings.append(sentence)
-        self.say(f"note: {sentence}")
+        self._keep(f"note: {sentence}")
 
     def note(self, sentence: str) -> None:
         """Print and keep a sentence on how the run was made that does not put its numbers in doubt."""
         self.notes.append(sentence)
-        self.say(f"note: {sentence}")
+        self._keep(f"note: {sentence}")
 
     def say(self, sentence: str) -> None:
-        """Print one line."""
+        """Print one line; in a notebook, in the place of the last."""
+        if self.cell is not None:
+            self.cell.say(one_line(sentence))
+            self._draw(at_once=True)
+            return
         self.console.print(one_line(sentence), soft_wrap=True)
+
+    def _keep(self, sentence: str) -> None:
+        """Print one line, which in a notebook stays."""
+        if self.cell is None:
+            self.say(sentence)
+            return
+        self.cell.note(one_line(sentence))
+        self._draw(at_once=True)
+
+    def _remove_ended(self) -> None:
+        """Leave one bar a stage: those before have ended."""
+        for task in [one for one in self.bar.tasks if one.id != self.whole]:
+            self.bar.remove_task(task.id)
+
+    def _draw(self, at_once: bool = False) -> None:
+        """Show the bars in a notebook."""
+        if self.cell is not None:
+            self.cell.draw(self.bar.tasks, at_once)
 
 
 def _span(seconds: float) -> str:

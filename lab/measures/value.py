@@ -8,13 +8,18 @@ from difflib import get_close_matches
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.base.notebook.html import paragraph, table, titled
+from lab.base.text import one_line
+from lab.measures.written import number
 
 LEVEL = 0.95  # of intervals
+
+HEADS = "measure", "mean ± std over beds", "note"
 
 NAME = re.compile(r"[A-Za-z0-9_]{1,60}")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Value:
     """A measured number. Every world of a run is one bed, and the number is measured in each of them.
 
@@ -49,6 +54,16 @@ class Value:
             return None
         half = half_width(self.standard_error, self.n - 1)
         return self.value - half, self.value + half
+
+    def __str__(self) -> str:
+        """As the lab writes it: "31.6 ± 4.0 deg (11 beds)"."""
+        return number(self)
+
+    def __repr__(self) -> str:
+        return f"<Value {one_line(self)}>"
+
+    def _repr_html_(self) -> str:
+        return titled(one_line(self), *([paragraph(self.note)] if self.note else []))
 
     def as_json(self) -> dict[str, object]:
         """For summary.json; docs/numbers.md says what each key is."""
@@ -85,6 +100,14 @@ class NotMeasured(LabError, KeyError):
 
 class Measures(dict[str, Value]):
     """The measures of a run by name; a name may be written as the lab prints it, "critical angle"."""
+
+    def __repr__(self) -> str:
+        width = max(map(len, self), default=0)
+        lines = [f"{one_line(name.replace('_', ' ')):<{width}}  {one_line(value)}" for name, value in self.items()]
+        return "\n".join(lines) or "no measures"
+
+    def _repr_html_(self) -> str:
+        return table(HEADS, ((name, value, value.note) for name, value in self.items()))
 
     def __missing__(self, name: object) -> Value:
         """The measure of a name with blanks. Raises NotMeasured, which names those that there are."""

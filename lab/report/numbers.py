@@ -4,17 +4,14 @@ Summaries, reports, figures and the terminal take the text of a number with its 
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
-from math import floor, isfinite, isinf, log10
+from math import isfinite, isinf
 
-from lab.measures.value import LEVEL, Value
+from lab.measures.value import LEVEL
+from lab.measures.written import digits_of, number, own, plus_minus, with_blank, with_error
 
-SMALL = 1e-3  # smaller numbers are written with a power of ten
+__all__ = ["BARS", "RULE", "count_of", "interval", "mean_within", "number", "own", "plus_minus", "with_error"]
+
 MOST_DIGITS = 6  # after the point
-# Units of grains that grow too small for ships: of each a thousand times the one before
-LADDERS = [["mN", "N", "kN", "MN", "GN"], ["µJ", "mJ", "J", "kJ", "MJ", "GJ"], ["mN m", "N m", "kN m", "MN m", "GN m"]]
-LONG = 1e5  # larger numbers are written in the next unit of a ladder
-ROUNDING = 1e-9  # of the value: a smaller scatter is rounding error
 RULE = (
     "± is the standard deviation over beds, whose number is in brackets; a single bed has none. A measure's own "
     "uncertainty is given with its name: see `docs/numbers.md`."
@@ -23,50 +20,12 @@ RULE = (
 BARS = "mean ± std over beds"
 
 
-def number(value: Value) -> str:
-    """A value, written as RULE says: "25.0 ± 1.3 deg (4 beds)", "24.96 deg (1 bed; detector 0.25 deg)"."""
-    if value.value is None:
-        return "none"
-    value = _readable(value)
-    unit = _unit(value.unit)
-    if value.std is not None:
-        return f"{plus_minus(value.value, value.std)}{unit}{_beds(value)}"
-    return f"{_alone(value)}{unit}{_beds(value, own(value))}"
-
-
-def own(value: Value) -> str:
-    """The measure's own uncertainty with its name, "detector 0.25 deg"; "" where there is none."""
-    if value.uncertainty is None:
-        return ""
-    return f"{value.kind or 'own uncertainty'} {value.uncertainty:.2g}{_unit(value.unit)}"
-
-
-def plus_minus(value: float, std: float) -> str:
-    """A mean and its standard deviation over beds, to two digits of the latter: "25.0 ± 1.3"."""
-    if not std or std < ROUNDING * abs(value):
-        return f"{value:.4g} ± 0"
-    digits, power = _digits(std), 0
-    if max(abs(value), std) < SMALL:
-        power = floor(log10(max(abs(value), std)))
-        value, std, digits = value / 10.0**power, std / 10.0**power, digits + power
-    text = f"{value:.{digits}f} ± {std:.{digits}f}"
-    return f"({text})e{power:+03d}" if power else text
-
-
-def with_error(value: float, error: float, unit: str = "", sign: str = "") -> str:
-    """A mean and its standard error: "3.0 ± 1.0 deg (s.e.)"; `sign` is "+" for differences."""
-    if not error or error < ROUNDING * abs(value):
-        return f"{value:{sign}.4g} ± 0{_unit(unit)} (s.e.)"
-    digits = _digits(error)
-    return f"{value:{sign}.{digits}f} ± {error:.{digits}f}{_unit(unit)} (s.e.)"
-
-
 def interval(low: float, high: float, unit: str = "", level: float = LEVEL) -> str:
     """An interval with its level: "[18.2, 23.1] deg (95 %)"."""
     width = high - low
-    digits = _digits(0.5 * width) if width > 0.0 and isfinite(width) else 3
+    digits = digits_of(0.5 * width) if width > 0.0 and isfinite(width) else 3
     ends = ", ".join(_end(end, digits) for end in (low, high))
-    return f"[{ends}]{_unit(unit)} ({100.0 * level:g} %)"
+    return f"[{ends}]{with_blank(unit)} ({100.0 * level:g} %)"
 
 
 def mean_within(mean: float, ends: Sequence[float] | None, digits: int) -> str:
@@ -81,42 +40,7 @@ def count_of(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def _readable(value: Value) -> Value:
-    """The same number in the unit of its ladder in which it is not too long to read."""
-    ladder = next((ladder for ladder in LADDERS if value.unit in ladder), None)
-    while ladder and abs(value.value) >= LONG and value.unit != ladder[-1]:
-        parts = {name: getattr(value, name) for name in ("value", "std", "uncertainty")}
-        less = {name: None if part is None else 1e-3 * part for name, part in parts.items()}
-        value = replace(value, unit=ladder[ladder.index(value.unit) + 1], **less)
-    return value
-
-
-def _digits(error: float) -> int:
-    """Number of decimals that show two digits of an error."""
-    return max(0, 1 - floor(log10(error)))
-
-
 def _end(number: float, digits: int) -> str:
     if isinf(number):
         return "−∞" if number < 0.0 else "∞"
     return f"{number:.{digits}f}" if digits <= MOST_DIGITS else f"{number:.2g}"
-
-
-def _alone(value: Value) -> str:
-    """A number of a single bed, with as many digits as its own uncertainty allows."""
-    error = value.uncertainty
-    if not error or error < ROUNDING * abs(value.value) or max(abs(value.value), error) < SMALL:
-        return f"{value.value:.4g}"
-    return f"{value.value:.{_digits(error)}f}"
-
-
-def _unit(unit: str) -> str:
-    return "" if unit in ("", "1") else f" {unit}"
-
-
-def _beds(value: Value, more: str = "") -> str:
-    """In brackets: the number of beds in which it was found, then `more`."""
-    count, all_beds = value.n, len(value.worlds)
-    said = f"{count} of {all_beds} beds" if count < all_beds else f"{count} bed{'s' if count != 1 else ''}"
-    parts = [said] * bool(all_beds) + [more] * bool(more)
-    return f" ({'; '.join(parts)})" if parts else ""

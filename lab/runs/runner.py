@@ -14,13 +14,14 @@ from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.base.turn import in_turn
 from lab.measures import measure_all
-from lab.measures.value import Value
+from lab.measures.value import Measures, Value
 from lab.paint.beside import Beside, second_process
 from lab.plugins.loading import local
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
-from lab.report.summary import terminal_summary, write_summary
+from lab.report.notebook import Film, Picture, film, of_run, plot
+from lab.report.summary import status_of, terminal_summary, write_summary
 from lab.runs.batch import run_batch
 from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import FILE_NAME as CHECKPOINT
@@ -31,13 +32,33 @@ from solvers.machine.runtime import available_cores
 RENDERS = Path("renders")
 
 
-@dataclass
+@dataclass(repr=False)
 class Result:
     """The result of a run: its folder, its measures by name, and the arrays of its recording."""
 
     folder: Path
     measures: dict[str, Value]
     summary_text: str = field(repr=False)
+
+    @property
+    def video(self) -> Film:
+        """The film, which a notebook plays; its `path` is the file. Raises LabError if none was painted."""
+        return film(self.folder)
+
+    def plot(self, name: str) -> Picture:
+        """A figure by its name, `result.plot("shift")`, which a notebook shows. Raises LabError with the names."""
+        return plot(self.folder, name)
+
+    def __str__(self) -> str:
+        return self.summary_text
+
+    def __repr__(self) -> str:
+        return f"<Result in {self.folder}>\n{self.measures!r}"
+
+    def _repr_html_(self) -> str:
+        recording = self.recording
+        facts = f"{recording.name}: {status_of(recording)}; {self.folder}"
+        return of_run(recording.preset.title, facts, Measures(self.measures)._repr_html_(), self.folder)
 
     @cached_property
     def recording(self) -> Recording:

@@ -1,8 +1,6 @@
 """The results of a sweep: a table for programs, figures, a video of the points side by side, and a page for readers."""
 
 import csv
-import json
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -21,12 +19,10 @@ from lab.report.numbers import BARS, RULE, number
 from lab.report.plots import STYLE
 from lab.report.summary import headlines
 from lab.sweeps.point import Point
+from lab.sweeps.result import Row, numeric, table
 
 FIGURES = 3  # number of measures with a figure
 FAMILIES = 6  # curves in one figure; more are drawn as a map
-QUANTITY = re.compile(r"([-+.0-9eE]+)\s*(\D.*)?")
-
-Row = dict[str, object]
 
 
 def write_report(
@@ -46,7 +42,7 @@ def write_report(
     LabError if the folder cannot be written.
     """
     points = [Point(setting, where) for setting, where in zip(settings, folders, strict=True)]
-    rows = _table(axes, points, folder)
+    rows = table(axes, points, folder)
     shown = headlines({key: value for point in points for key, value in point.measures.items()}, FIGURES)
     files = {"results": folder / "results.csv"}
     try:
@@ -60,43 +56,7 @@ def write_report(
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error
     files["summary"] = page
-    return rows, _text(name, points, files)
-
-
-def numeric(values: Sequence) -> tuple[np.ndarray, str] | None:
-    """Values of a key as numbers with their common unit ("" for none), or None if they are not of this kind."""
-    numbers, units = [], set()
-    for value in values:
-        found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
-        if isinstance(value, bool) or not (found or isinstance(value, int | float)):
-            return None
-        try:
-            numbers.append(float(found[1] if found else value))
-        except ValueError:  # 1-2
-            return None
-        units.add((found[2] or "") if found else "")
-    return (np.array(numbers), units.pop()) if len(units) == 1 else None
-
-
-def _table(axes: Mapping[str, Sequence], points: Sequence[Point], folder: Path) -> list[Row]:
-    """One row per point: the swept keys in their units, status, and mean, std, n, own uncertainty of each measure."""
-    scales = {key: numeric(values) for key, values in axes.items()}
-    measures = {key: value for point in points for key, value in point.measures.items()}
-    rows = []
-    for k, point in enumerate(points):
-        row: Row = {"point": k, "folder": point.folder.relative_to(folder).as_posix(), "status": point.status}
-        for key, value in point.setting.items():
-            scale = scales[key]
-            unit = f" ({scale[1]})" if scale and scale[1] else ""
-            row[key + unit] = float(numeric([value])[0][0]) if scale and isinstance(value, str) else _plain(value)
-        for key, known in measures.items():
-            value = point.measures.get(key) or Value(None, known.unit)
-            row[key if known.unit == "1" else f"{key} ({known.unit})"] = value.value
-            row[f"{key} std"], row[f"{key} n"] = value.std, value.n
-            if known.kind:
-                row[f"{key} {known.kind} uncertainty"] = value.uncertainty
-        rows.append(row)
-    return rows
+    return rows, in_words(name, points, files)
 
 
 def _write_table(rows: Sequence[Row], path: Path) -> None:
@@ -104,10 +64,6 @@ def _write_table(rows: Sequence[Row], path: Path) -> None:
         writer = csv.DictWriter(file, rows[0])
         writer.writerow({key: cell(key) for key in rows[0]})
         writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
-
-
-def _plain(value: object) -> object:
-    return value if isinstance(value, str | int | float) else json.dumps(value)
 
 
 def _figures(
@@ -264,12 +220,13 @@ def _progress(points: Sequence[Point]) -> str:
     return f"{text}; stopped: {', '.join(stopped)}." if stopped else f"{text}."
 
 
-def _text(name: str, points: Sequence[Point], files: Mapping[str, Path]) -> str:
+def in_words(name: str, points: Sequence[Point], files: Mapping[str, Path]) -> str:
+    """The points and the files in plain text, a line each."""
     lines = [f"Sweep of {one_line(name)}: {_progress(points)}"]
     width = max(len(point.caption) for point in points)
     for point in points:
         values = [f"{key.replace('_', ' ')} {number(value)}" for key, value in headlines(point.measures, 2).items()]
         lines.append(f"  {point.caption:<{width}}  {', '.join(values) or one_line(point.status)}")
-    width = max(map(len, files))
+    width = max(map(len, files), default=0)
     made = [f"  {key.replace('_', ' '):<{width}}  {path}" for key, path in files.items()]
     return printable("\n".join([*lines, "", *made]))

@@ -10,7 +10,7 @@ from lab.sweeps.request import SWEEP
 if TYPE_CHECKING:
     from lab.runs.runner import Result
     from lab.sweeps.calibration_report import Calibration
-    from lab.sweeps.sweep import SweepResult
+    from lab.sweeps.result import SweepResult
 
 
 def resume_any(

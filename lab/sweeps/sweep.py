@@ -5,8 +5,6 @@ sweep continues when it is requested again.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 
 from lab.assembly.water import particles
@@ -24,25 +22,13 @@ from lab.runs.run import Run, prepare
 from lab.runs.runner import RENDERS, hint, report, reported
 from lab.sweeps.cluster import Errand, fetch
 from lab.sweeps.grid import FILE_NAME, Sweep, define_sweep, read_sweep
-from lab.sweeps.report import write_report
+from lab.sweeps.point import Point
+from lab.sweeps.report import in_words, write_report
+from lab.sweeps.result import SweepResult, point_folder, table
 from solvers.machine.runtime import available_cores, choose_arch
 
 # Limits of a batch: enough worlds per core that none idles long at the end, and bounded numbers of grains and files.
 WORLDS_A_CORE, MOST_GRAINS, MOST_RUNS = 8, 1_000_000, 100
-
-
-@dataclass
-class SweepResult:
-    """The result of a sweep: its folder, a row of numbers for each point, and the folders of the points' runs."""
-
-    folder: Path
-    rows: list[dict[str, object]] = field(repr=False)
-    summary_text: str = field(repr=False)
-
-    @cached_property
-    def points(self) -> list[Path]:
-        """The folder of each point's run, in the order of the rows."""
-        return [point_folder(self.folder, number) for number in range(len(self.rows))]
 
 
 def run_sweep(
@@ -85,9 +71,12 @@ def resume_sweep(folder: Path | str, *, video: bool = True, plots: bool = True, 
     return _complete(read_sweep(Path(folder)), Path(folder), video, plots, quiet)
 
 
-def point_folder(folder: Path, number: int) -> Path:
-    """The folder of a point's run."""
-    return folder / "points" / f"{number:03}"
+def open_sweep(folder: Path | str) -> SweepResult:
+    """The sweep in a folder, finished or not, as far as it has run. Raises LabError."""
+    folder = Path(folder)
+    sweep = read_sweep(folder)
+    points = [Point(setting, point_folder(folder, number)) for number, setting in enumerate(sweep.settings)]
+    return SweepResult(folder, table(sweep.axes, points, folder), in_words(sweep.name, points, {}))
 
 
 def _begin(sweep: Sweep, folder: Path) -> None:

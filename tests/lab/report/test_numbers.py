@@ -69,4 +69,4 @@ def test_every_kind_of_uncertainty_is_explained_on_the_page_on_numbers():
 def test_numbers_with_plus_minus_are_written_in_one_place():
     """Elsewhere a text may have ± in words, but not between two numbers that it fills in."""
     filled = [path.name for path in (ROOT / "lab").rglob("*.py") if "} ± {" in path.read_text(encoding="utf-8")]
-    assert set(filled) == {"numbers.py"}
+    assert set(filled) == {"written.py"}
