@@ -74,6 +74,8 @@ def test_the_tree_has_the_tables_numbers_and_says_what_they_are_of(opened, chanc
     assert set(tree.children) == {"series", "frames", "tank", "grains", "parts"}
     assert tree["frames/position"].values.tobytes() == chance.tobytes()
     assert tree["series/wall_force"].sel(freedom="roll", world=1).values.tolist() == [*range(FRAMES)]
+    force = tree["series/wall_force"].attrs
+    assert force["component_units"] == "N, N, N m" and "units" not in force and force["cell_methods"] == "time: mean"
     for name in ("series", "frames"):
         table = getattr(opened, name)
         for quantity in table.quantities.values():
