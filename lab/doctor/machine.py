@@ -25,7 +25,7 @@ EXTRAS = {  # packages that few need, what they are for, and the extra that brin
 
 
 @dataclass(frozen=True)
-class Finding:
+class Examined:
     """What was looked at, what was found, how good that is, and what follows."""
 
     what: str
@@ -34,9 +34,9 @@ class Finding:
     follows: str = ""
 
 
-def examine(folder: Path | None = None) -> list[Finding]:
+def examine(folder: Path | None = None) -> list[Examined]:
     """All findings, in the order in which they are told. folder: where results would be written."""
-    looks: tuple[Callable[[], Finding], ...] = (
+    looks: tuple[Callable[[], Examined], ...] = (
         _python,
         _cores,
         _vectors,
@@ -52,12 +52,12 @@ def examine(folder: Path | None = None) -> list[Finding]:
     return [*(look() for look in looks), *_extras()]
 
 
-def as_objects(findings: list[Finding]) -> list[dict[str, str]]:
+def as_objects(findings: list[Examined]) -> list[dict[str, str]]:
     """The findings as JSON has them."""
     return [asdict(one) for one in findings]
 
 
-def told(findings: list[Finding]) -> str:
+def told(findings: list[Examined]) -> str:
     """The findings as lines of text."""
     width = max(len(one.what) for one in findings)
     lines = []
@@ -67,28 +67,28 @@ def told(findings: list[Finding]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _python() -> Finding:
-    return Finding(
+def _python() -> Examined:
+    return Examined(
         "lab", f"{__version__}, Python {platform.python_version()}, {platform.system()} {platform.machine()}"
     )
 
 
-def _cores() -> Finding:
+def _cores() -> Examined:
     from solvers.machine.runtime import available_cores
 
     here, whole = available_cores(), os.cpu_count() or 1
     follows = "" if here > 1 else "several beds run one after the other, and films are painted after the run"
     of_all = f" of {whole}" if whole != here else ""
-    return Finding("cores", f"{here}{of_all} may be used", GOOD if here > 1 else SLOWER, follows)
+    return Examined("cores", f"{here}{of_all} may be used", GOOD if here > 1 else SLOWER, follows)
 
 
-def _vectors() -> Finding:
+def _vectors() -> Examined:
     from solvers.machine.wide import registers
 
     bits = registers()
     if bits:
-        return Finding("vectors", f"{'AVX-512' if bits >= 512 else 'AVX2'}, registers of {bits} bits")
-    return Finding(
+        return Examined("vectors", f"{'AVX-512' if bits >= 512 else 'AVX2'}, registers of {bits} bits")
+    return Examined(
         "vectors",
         "none that the lab uses",
         SLOWER,
@@ -96,79 +96,81 @@ def _vectors() -> Finding:
     )
 
 
-def _memory() -> Finding:
+def _memory() -> Examined:
     size = machine_memory()
     follows = "" if size > LITTLE_MEMORY else "large tanks of water do not fit; half of it may be used by a run"
-    return Finding("memory", f"{size / 2**30:.1f} GiB", GOOD if size > LITTLE_MEMORY else SLOWER, follows)
+    return Examined("memory", f"{size / 2**30:.1f} GiB", GOOD if size > LITTLE_MEMORY else SLOWER, follows)
 
 
-def _cuda() -> Finding:
+def _cuda() -> Examined:
     from solvers.machine.runtime import has_cuda
 
     if has_cuda():
-        return Finding("CUDA", "there is a device", GOOD, "large scenes run on it (run.arch)")
-    return Finding("CUDA", "no device", MISSING, "all runs on the cores, which suits most presets")
+        return Examined("CUDA", "there is a device", GOOD, "large scenes run on it (run.arch)")
+    return Examined("CUDA", "no device", MISSING, "all runs on the cores, which suits most presets")
 
 
-def _vulkan() -> Finding:
+def _vulkan() -> Examined:
     from solvers.machine.runtime import has_vulkan
 
     if has_vulkan():
-        return Finding("Vulkan", "there is a device", GOOD, "grains in 32 bits run on it, and the faster window")
-    return Finding("Vulkan", "no device", MISSING, "`cargolab view` draws its window by the processor")
+        return Examined("Vulkan", "there is a device", GOOD, "grains in 32 bits run on it, and the faster window")
+    return Examined("Vulkan", "no device", MISSING, "`cargolab view` draws its window by the processor")
 
 
-def _display() -> Finding:
+def _display() -> Examined:
     from lab.view.windows import has_display
 
     if has_display():
-        return Finding("display", "there is one")
-    return Finding("display", "none", MISSING, "`cargolab view` opens no window; films need none")
+        return Examined("display", "there is one")
+    return Examined("display", "none", MISSING, "`cargolab view` opens no window; films need none")
 
 
-def _ffmpeg() -> Finding:
+def _ffmpeg() -> Examined:
     from lab.paint.encoder import ffmpeg
 
     try:
-        return Finding("ffmpeg", ffmpeg())
+        return Examined("ffmpeg", ffmpeg())
     except Exception as error:
         said = (str(error).splitlines() or ["?"])[0]
-        return Finding("ffmpeg", "none", MISSING, f"no films, but single pictures by `render --png` ({said})")
+        return Examined("ffmpeg", "none", MISSING, f"no films, but single pictures by `render --png` ({said})")
 
 
-def _cache() -> Finding:
+def _cache() -> Examined:
     from lab.doctor.cache import size_of, stores
 
     if said := lacking():
-        return Finding("cache", "no folder", SLOWER, said.removesuffix("."))
+        return Examined("cache", "no folder", SLOWER, said.removesuffix("."))
     whole = sum(size_of(store.folder) for store in stores())
-    return Finding("cache", f"{whole / 2**20:.0f} MiB", GOOD, "`cargolab cache` shows it")
+    return Examined("cache", f"{whole / 2**20:.0f} MiB", GOOD, "`cargolab cache` shows it")
 
 
-def _disk(folder: Path) -> Finding:
+def _disk(folder: Path) -> Examined:
     free = shutil.disk_usage(folder).free
     follows = "" if free > LITTLE_DISK else "a run of many pictures may not fit; choose another folder with --out"
-    return Finding("disk", f"{free / 2**30:.1f} GiB free here", GOOD if free > LITTLE_DISK else SLOWER, follows)
+    return Examined("disk", f"{free / 2**30:.1f} GiB free here", GOOD if free > LITTLE_DISK else SLOWER, follows)
 
 
-def _compiling() -> Finding:
+def _compiling() -> Examined:
     from solvers.machine.compiling import quick
 
     if quick():
-        return Finding(
+        return Examined(
             "kernels", "CARGOLAB_COMPILE=quick", SLOWER, "they compile in half the time and run a fifth slower"
         )
-    return Finding("kernels", "compiled to run fast", GOOD, "new ones take seconds for grains, half a minute for water")
+    return Examined(
+        "kernels", "compiled to run fast", GOOD, "new ones take seconds for grains, half a minute for water"
+    )
 
 
-def _extras() -> list[Finding]:
+def _extras() -> list[Examined]:
     found = []
     for package, (purpose, extra) in EXTRAS.items():
         if importlib.util.find_spec(package) is not None:
-            found.append(Finding(package, "installed"))
+            found.append(Examined(package, "installed"))
         else:
             remedy = f"pip install 'cargo-shift-lab[{extra}]' for {purpose}"
-            found.append(Finding(package, "not installed", MISSING, remedy))
+            found.append(Examined(package, "not installed", MISSING, remedy))
     return found
 
 

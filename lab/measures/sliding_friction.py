@@ -30,7 +30,7 @@ MISSING, STOOD = "the plate bore no load", "the plate hardly moved"
 def applies(recording: Recording) -> bool:
     """A level plate moves along itself, for some time, and its load was recorded."""
     long = len(recording.series["time"]) > LEAST_SAMPLES and len(recording.frames["time"]) > 0
-    return long and "part_force" in recording.series and bool(plates(recording))
+    return long and "part_load" in recording.series and bool(plates(recording))
 
 
 def plates(recording: Recording) -> dict[str, np.ndarray]:
@@ -83,7 +83,7 @@ def _ratio(work: np.ndarray, load: np.ndarray) -> np.ndarray:
 def _loads(recording: Recording, name: str) -> tuple[np.ndarray, np.ndarray, int]:
     """The forces (T, W) N of the bed on a plate, along y and downwards, and the number of the plate."""
     number = list(recording.parts).index(name)
-    force = recording.series["part_force"][:, :, number]
+    force = recording.series["part_load"][:, :, number]
     return force[..., 0], -force[..., 1], number
 
 

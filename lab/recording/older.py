@@ -24,7 +24,7 @@ RENAMED = {  # data sets and axes of format 3, and their present names
 ADDED = {
     "part_turn",
     "face_force",
-    "part_force",
+    "part_load",
 }  # data sets that recordings of earlier versions may not have, and go on without
 
 

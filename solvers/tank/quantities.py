@@ -32,7 +32,7 @@ OF_FACES = (
 )
 OF_PARTS = (
     Quantity(
-        "part_force",
+        "part_load",
         "N, N, N m",
         freedoms,
         "force of the cargo on each part, in the tank's axes",

@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from lab.base.text import heading, one_line
 from lab.export.columns import columns_of
-from lab.export.html.scene import Reel, first_stride
+from lab.export.html.scene import Film, first_stride
 from lab.measures import measure_all
 from lab.report.numbers import RULE, number
 from lab.report.summary import headlines
@@ -32,7 +32,7 @@ def write_html(stage: Stage, rows: Sequence[int], path: Path, reach: Callable[[i
     inside = stage.of_tank()
     first = first_stride(inside, rows)
     rows = rows[::first]
-    reel = Reel(inside, rows, lambda done: reach(done * first))
+    reel = Film(inside, rows, lambda done: reach(done * first))
     about = {"first": "earth" if stage.earth else "tank", "curves": curves(stage)}
     numbers, stride = _numbers(stage), 1
     while True:

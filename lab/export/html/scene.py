@@ -24,7 +24,7 @@ SHARP = 0.95  # cosine between faces, below which the edge between them is drawn
 PLAIN = {"id", "kind", "radius", "volume", "angle", "spin", "velocity"}  # no colours
 
 
-class Reel:
+class Film:
     """The pictures of a stage that a page holds, read once; `rows`: their numbers."""
 
     def __init__(self, stage: Stage, rows: Sequence[int], reach: Callable[[int], None]) -> None:

@@ -20,7 +20,7 @@ def told(place: np.ndarray, along: float, across: float, ends: float = 0.0, **ho
     displaced = np.stack([place, np.zeros(len(place))], axis=-1)[:, None, None]
     part = {"closed": False, "move": (1.0, 0.0), "moves": {}}
     return SimpleNamespace(
-        series={"time": time, "part_force": force},
+        series={"time": time, "part_load": force},
         frames={"time": time, "part": displaced},
         parts={"floor": np.array([(0.0, 0.0), (9.0, ends)])},
         preset=SimpleNamespace(parts={"floor": SimpleNamespace(**part | how)}),
@@ -54,6 +54,6 @@ def test_grains_that_stay_in_their_places_slide_at_their_coefficient(tmp_path):
         found = measure_all(recording)["sliding_friction"]
         assert found.value == pytest.approx(0.2, rel=0.02) and found.value < 0.2 + 1e-6
         rows = recording.series["time"] > 3.0
-        carried = -recording.series["part_force"][rows, 0, :, 1].sum(axis=1).mean()
+        carried = -recording.series["part_load"][rows, 0, :, 1].sum(axis=1).mean()
         weight = 9.81 * 1400.0 * 4.0 / 3.0 * np.pi * (recording.radius**3).sum()
         assert carried == pytest.approx(weight, rel=0.01)

@@ -163,3 +163,11 @@ def test_attributes_that_do_not_fit_their_data_are_refused(recorded, tmp_path, n
         file["series/kinetic"].attrs[name] = value
     with pytest.raises(LabError, match=r"recording\.h5"):
         open_recording(path)
+
+
+@pytest.mark.parametrize("matters", [("grains", "water", "air"), ("bulk",)])
+def test_no_two_quantities_of_a_run_have_one_name(matters):
+    """Of a run that has everything at once."""
+    for quantities in (series_of(True, matters, True, True, True, True, True), frames_of(True, matters, True, True)):
+        names = [quantity.name for quantity in quantities]
+        assert len(names) == len(set(names))
