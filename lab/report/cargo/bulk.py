@@ -18,7 +18,7 @@ CANNOT = (
 # How far it is from beds of grains (docs/physics/bulk-beside-grains.md)
 BESIDE = (
     "shifts within 8 % of those of 120 across in rolls of the box that its friction was found in, a sixth short in a "
-    "hold with hoppers, two fifths in sway of half of g, in a sixteenth of the time; 30 across lack a half; a wedge that "
+    "hold with hoppers, half in sway of half of g, in a sixteenth of the time; 30 across lack a half; a wedge that "
     "lies at ship.repose costs nothing"
 )
 POINT_STEPS_PER_CORE = 6e6  # a second of one core (AMD EPYC, Zen 3)
@@ -41,7 +41,8 @@ def described(preset: Preset, scene) -> list[tuple[str, str]]:
         ("at walls", walls),
         (
             "stiffness",
-            f"{show(material.young, 'Pa')}, {preset.bulk.stiffness:g} times the bottom's stress; stiffer shifts less",
+            f"{show(material.young, 'Pa')}, {preset.bulk.stiffness:g} times the bottom's stress; "
+            "16 times as stiff shifts 1 to 3 % less",
         ),
         (
             "stands for",
