@@ -8,13 +8,13 @@ import tempfile
 
 import cargolab
 
-bed = cargolab.Preset("tilting/quick", tank={"width": "72 mm"}, grains={"depth": "34 mm"})  # about 280 grains
+box = cargolab.Preset("tilting/quick", tank={"width": "72 mm"}, grains={"depth": "34 mm"})  # about 280 grains
 
 with tempfile.TemporaryDirectory() as folder:
-    result = bed.run(f"{folder}/run", repeats=6, video=False, plots=False, quiet=True)
+    result = box.run(f"{folder}/run", repeats=6, video=False, plots=False, quiet=True)
     angle = result.measures["critical_angle"]
 
 low, high = angle.interval
-print(f"angle of each bed: {', '.join(f'{bed:.1f}' for bed in angle.worlds if bed is not None)} {angle.unit}")
+print(f"angle of each bed: {', '.join(f'{one:.1f}' for one in angle.worlds if one is not None)} {angle.unit}")
 print(f"mean ± standard deviation of the beds: {angle.value:.1f} ± {angle.std:.1f} {angle.unit}, {angle.n} beds")
 print(f"mean of very many beds, at 95 %: {low:.1f} to {high:.1f} {angle.unit}")

@@ -24,8 +24,9 @@ def run_up(recording):
     return 1e3 * (highest(-1) - highest(0))
 
 
+bed = cargolab.Preset("tilting/quick", tank={"width": "72 mm"}, grains={"depth": "34 mm"})
 with tempfile.TemporaryDirectory() as folder:
-    result = cargolab.run("tilting/quick", f"{folder}/run", video=False, plots=False, quiet=True)
+    result = bed.run(f"{folder}/run", video=False, plots=False, quiet=True)
 
 found = result.measures["run_up"]
 print(f"run-up on the lower wall: {found.value:.1f} ± {found.std:.1f} {found.unit}, {found.n} beds")

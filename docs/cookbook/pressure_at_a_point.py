@@ -6,11 +6,11 @@ that of water at rest. Takes about half a minute.
 
 import tempfile
 
-from pint import UnitRegistry
+from pint import get_application_registry
 
 import cargolab
 
-units = UnitRegistry()
+units = get_application_registry()
 tank = cargolab.Preset("sloshing/quick")
 tank["water.spacing"] = 9.3 * units.mm
 tank["motion.roll.amplitude"] = 0.03 * units.rad
@@ -25,6 +25,6 @@ with tempfile.TemporaryDirectory() as folder:
         pressure = units.Quantity(float(found.pressure[0]), found.pressure.units)
         print(f"{times[frame]:.2f} s: {pressure.to('mbar'):.2f~P}")
 
-depth = tank.quantity("water.depth") - tank.quantity("water.depth").__class__(0.03, "m")
-rest = tank.quantity("water.density") * depth * tank.quantity("run.gravity")
+above = tank.quantity("water.depth") - point[1]
+rest = tank.quantity("water.density") * tank.quantity("run.gravity") * above
 print(f"at rest: {rest.to('mbar'):.2f~P}")

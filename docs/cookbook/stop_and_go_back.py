@@ -18,20 +18,22 @@ def go_on(simulation):
     return "held to the end" if simulation.ended else f"slid at {simulation.time:.2f} s"
 
 
-with tempfile.TemporaryDirectory() as folder:
-    with cargolab.Simulation("tilting/quick", f"{folder}/run", repeats=1, quiet=True) as simulation:
-        start = simulation.now["centre_of_mass"][0, 0]
-        moments = deque(maxlen=10)  # the last second
+with (
+    tempfile.TemporaryDirectory() as folder,
+    cargolab.Simulation("tilting/quick", f"{folder}/run", repeats=1, quiet=True) as simulation,
+):
+    start = simulation.now["centre_of_mass"][0, 0]
+    moments = deque(maxlen=10)  # the last second
 
-        @simulation.every("0.1 s")
-        def look(now):
-            if abs(now.now["centre_of_mass"][0, 0] - start) > SHIFTED:
-                now.stop()
-            else:
-                moments.append((now.time, now.save()))
+    @simulation.every("0.1 s")
+    def look(now):
+        if abs(now.now["centre_of_mass"][0, 0] - start) > SHIFTED:
+            now.stop()
+        else:
+            moments.append((now.time, now.save()))
 
-        print(f"as it is: {go_on(simulation)}")
-        time, moment = moments[0]
-        simulation.restore(moment)
-        simulation.set("material.friction", 0.5)
-        print(f"with a friction of 0.5 from {time:.2f} s on: {go_on(simulation)}")
+    print(f"as it is: {go_on(simulation)}")
+    time, moment = moments[0]
+    simulation.restore(moment)
+    simulation.set("material.friction", 0.5)
+    print(f"with a friction of 0.5 from {time:.2f} s on: {go_on(simulation)}")

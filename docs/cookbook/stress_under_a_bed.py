@@ -12,9 +12,11 @@ import cargolab
 
 GRAVITY = 9.81  # m/s²
 
-with tempfile.TemporaryDirectory() as folder:
-    with cargolab.Simulation("tilting/quick", f"{folder}/run", repeats=1, quiet=True) as simulation:
-        bed = cargolab.fields(simulation, spacing=0.003, width=0.0045)
+with (
+    tempfile.TemporaryDirectory() as folder,
+    cargolab.Simulation("tilting/quick", f"{folder}/run", repeats=1, quiet=True) as simulation,
+):
+    bed = cargolab.fields(simulation, spacing=0.003, width=0.0045)
 
 middle = bed.sel(y=slice(-0.03, 0.03)).mean("y")
 upright, across = middle.stress.sel(axis="z", across="z"), middle.stress.sel(axis="y", across="y")
