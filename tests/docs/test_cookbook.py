@@ -22,7 +22,7 @@ SAYS = {  # a few words of what each prints
     "flooding": "duct of 0.8 m: largest heel ",
     "friction_from_tilt": "bulk.friction: 0.4",
     "own_grain": "lens: slides at ",
-    "own_law": "restitution: 0.599, asked: 0.6",
+    "own_law": "restitution: 0.59",
     "own_measure": "run-up on the lower wall: ",
     "pressure_at_a_point": "at rest: 6.17 mbar",
     "righting_lever": "30 deg: GZ  0.851 m",
