@@ -18,7 +18,7 @@ CANNOT = (
 # How far it is from beds of grains (docs/physics/bulk-beside-grains.md)
 BESIDE = (
     "shifts within 8 % of those of 120 across in rolls of the box that its friction was found in, a sixth short in a "
-    "hold with hoppers, half in sway of half of g, in a sixteenth of the time; 30 across lack a half; a wedge that "
+    "hold with hoppers, half in sway of half of g, in a twentieth of the time; 30 across lack a half; a wedge that "
     "lies at ship.repose costs nothing"
 )
 POINT_STEPS_PER_CORE = 6e6  # a second of one core (AMD EPYC, Zen 3)
