@@ -131,6 +131,7 @@ def test_matters_are_arrays_with_units(simulation):
         grains.pressure  # noqa: B018
 
 
+@pytest.mark.slow
 def test_another_run_with_other_settings_takes_over_and_the_remedy_is_said(simulation, small, tmp_path):
     simulation.run("0.1 s")
     cargolab.run(small, tmp_path / "other", run__precision="f32", video=False, plots=False, quiet=True)

@@ -103,9 +103,11 @@ def record(
     kinetic = np.zeros(centre.shape[:2]) if kinetic is None else kinetic
     writer = recorder(folder, worlds, **options)
     writer.wall_s, writer.grain_steps = 12.5, 25_000_000
+    parted = "part_load" in writer.series
+    loads = {"part_load": np.zeros((worlds, len(options["parts"]), 3))} if parted else {}
     for k, now in enumerate(time):
         moved = {"pose": np.tile(pose[k], (worlds, 1)), "centre_of_mass": centre[k]}
-        writer.sample(sample(now, worlds, kinetic=kinetic[k], **moved))
+        writer.sample(sample(now, worlds, kinetic=kinetic[k], **moved, **loads))
     for row in frames or [frame(0.0, worlds)]:
         writer.frame(row)
     writer.close(status)

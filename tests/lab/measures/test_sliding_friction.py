@@ -46,6 +46,7 @@ def test_what_does_not_slide_along_itself_has_no_friction():
     assert sliding_friction.measure(told(moved, 0.0, 0.0))["sliding_friction"].value is None
 
 
+@pytest.mark.slow
 def test_grains_that_stay_in_their_places_slide_at_their_coefficient(tmp_path):
     """Coulomb: where all contacts slip, the force along is μ of that across. Floor and frame carry the weight."""
     shorter = {"wall.friction": 0.2, "parts.floor.move": ["2 m", "0 m"], "run.duration": "7 s"}
