@@ -122,6 +122,25 @@ def plot(folder: Path, name: str) -> Picture:
     raise NotRecorded(f"{folder} has no figure {one_line(name)[:100]!r}; {has}")
 
 
+class WithPictures:
+    """What the results of a run and of a sweep share: a `folder` with pictures, and a summary."""
+
+    folder: Path
+    summary_text: str
+
+    @property
+    def video(self) -> Film:
+        """The film, which a notebook plays; its `path` is the file. Raises LabError if none was painted."""
+        return film(self.folder)
+
+    def plot(self, name: str) -> Picture:
+        """A figure by its name, `result.plot("shift")`, which a notebook shows. Raises LabError with the names."""
+        return plot(self.folder, name)
+
+    def __str__(self) -> str:
+        return self.summary_text
+
+
 def of_run(title: str, facts: str, measures: str, folder: Path) -> str:
     """A run: its title, facts, table of measures (HTML), and its film if there is one."""
     return titled(title, paragraph(facts), measures, *_films(folder))

@@ -20,7 +20,7 @@ from lab.plugins.loading import local
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
-from lab.report.notebook import Film, Picture, film, of_run, plot
+from lab.report.notebook import WithPictures, of_run
 from lab.report.summary import status_of, terminal_summary, write_summary
 from lab.runs.batch import run_batch
 from lab.runs.belongs import check_belongs
@@ -33,24 +33,12 @@ RENDERS = Path("renders")
 
 
 @dataclass(repr=False)
-class Result:
+class Result(WithPictures):
     """The result of a run: its folder, its measures by name, and the arrays of its recording."""
 
     folder: Path
     measures: dict[str, Value]
     summary_text: str = field(repr=False)
-
-    @property
-    def video(self) -> Film:
-        """The film, which a notebook plays; its `path` is the file. Raises LabError if none was painted."""
-        return film(self.folder)
-
-    def plot(self, name: str) -> Picture:
-        """A figure by its name, `result.plot("shift")`, which a notebook shows. Raises LabError with the names."""
-        return plot(self.folder, name)
-
-    def __str__(self) -> str:
-        return self.summary_text
 
     def __repr__(self) -> str:
         return f"<Result in {self.folder}>\n{self.measures!r}"

@@ -15,7 +15,7 @@ from lab.base.notebook import html
 from lab.base.text import one_line
 from lab.measures.value import Value
 from lab.preset.python.keys import about, value_of
-from lab.report.notebook import Film, Picture, film, plot
+from lab.report.notebook import WithPictures
 from lab.report.numbers import number
 from lab.report.summary import headlines
 from lab.sweeps.grid import Sweep, read_sweep
@@ -33,7 +33,7 @@ Row = dict[str, object]
 
 
 @dataclass(repr=False)
-class SweepResult:
+class SweepResult(WithPictures):
     """The result of a sweep: its folder, a row of numbers for each point, and the folders of the points' runs."""
 
     folder: Path
@@ -62,18 +62,6 @@ class SweepResult:
             name: found[name].attrs["units"] for name in frame.columns if "units" in found[name].attrs
         }
         return frame
-
-    @property
-    def video(self) -> Film:
-        """The film of the points side by side, which a notebook plays. Raises LabError if none was painted."""
-        return film(self.folder)
-
-    def plot(self, name: str) -> Picture:
-        """A figure by its name, which a notebook shows. Raises LabError with the names."""
-        return plot(self.folder, name)
-
-    def __str__(self) -> str:
-        return self.summary_text
 
     def __repr__(self) -> str:
         return f"<SweepResult of {len(self.rows)} points in {self.folder}>"
