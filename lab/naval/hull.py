@@ -83,4 +83,19 @@ def read_hull(
         raise LabError(f"{path.name}: --scale, --up, --origin, --mirror and --close are for surfaces; leave them out.")
     else:
         form, mesh = read_offsets(path, fair), None
+    _check_spacing(form, path.name)
     return Hull(path.name, between(form, lbp, lwl, ap), Water(density), mesh)
+
+
+def _check_spacing(form: Form, name: str) -> None:
+    """Raise LabError where the sum over stations gives more than the largest section all along.
+
+    Simpson's rule lays parabolas through the stations, which overshoot where these are spaced too unevenly.
+    """
+    largest = max(section.area for section in form.sections if section is not None)
+    if form.volume > largest * float(np.ptp(form.x)) * (1.0 + 1e-6):
+        gap = int(np.argmax(np.diff(form.x)))
+        raise LabError(
+            f"{name}: the stations are spaced too unevenly to sum over them by Simpson's rule; give further ones "
+            f"between x = {form.x[gap]:.4g} m and {form.x[gap + 1]:.4g} m."
+        )

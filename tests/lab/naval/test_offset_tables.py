@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lab.assembly.lines.offsets import COLUMNS, from_offsets, read_offsets, rows_of
+from lab.naval.hull import read_hull
 from lab.naval.weights import read_weights
 from lab.preset.tables import read_table
 from lab.report.hull import Asked, examine
@@ -154,3 +155,15 @@ def test_files_that_are_read_are_not_written_over(tmp_path):
         told = error_of(examine, path, tmp_path, asked)
         assert told == f"--out: {name} was read and would be written over; choose another folder."
     assert (hull.read_text(), weights.read_text()) == before
+
+
+def test_stations_too_uneven_for_simpsons_rule_are_refused(tmp_path):
+    """A barge with bevelled ends has more than its box by parabolas over 4, 32 and 4 m; even stations are exact."""
+    path = tmp_path / "barge.csv"
+    for stations, holds in (((0.0, 4.0, 36.0, 40.0), False), (np.linspace(0.0, 40.0, 21), True)):
+        rows = [(x, z, 5.0 * min(1.0, x / 4.0, (40.0 - x) / 4.0)) for x in stations for z in (0.0, 4.0)]
+        path.write_text("x,z,y\n" + "".join(f"{x},{z},{y}\n" for x, z, y in rows))
+        if holds:
+            assert read_hull(path).form.volume == pytest.approx(1440.0, rel=5e-3)
+        else:
+            assert "between x = 4 m and 36 m" in error_of(lambda: read_hull(path))
