@@ -75,7 +75,7 @@ def column(tmp_path_factory):
 
 
 def test_the_upright_stress_carries_the_weight_above(column):
-    """Without friction walls carry none: σ_zz times the width is the weight over it, within 5 % of the whole.
+    """Without friction walls carry none: σ_zz times the width is the weight over it, within 8 % of the whole.
 
     The width of Lucy's function smears the weight of one layer of grains over its neighbours.
     """
