@@ -4,6 +4,7 @@ Taichi 1.7.4 silently miscompiles reads of a local vector's element after the ve
 8744); switching its control-flow-graph optimisation off cures it. Every kernel of the lab relies on this module.
 """
 
+import atexit
 import ctypes
 import gc
 import os
@@ -177,6 +178,15 @@ def _start(threads: int, arch: str, real, options: dict) -> None:
         **options,
     )
     _threads[:] = sorted(_own_threads() - before)
+
+
+def _keep_kernels() -> None:
+    """Have Taichi write the kernels that it compiled: it does so as its program ends, which Python may never end."""
+    if _started_by == os.getpid():
+        ti.lang.impl.get_runtime().clear()
+
+
+atexit.register(_keep_kernels)
 
 
 def _own_threads() -> set[int]:
