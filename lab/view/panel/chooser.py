@@ -1,17 +1,15 @@
 """The first page of the window: every preset with its poster, to choose one from."""
 
-from pathlib import Path
-
 import numpy as np
 from PIL import Image, ImageDraw, ImageOps
 
+from lab.base.data import poster
 from lab.paint import decorations as deco
 from lab.paint import palette
 from lab.preset.find import QUICK, load, names
 from lab.preset.schema import Preset
 
 COLUMNS, ROWS = 4, 3
-POSTERS = Path("renders/gallery/presets")  # where `cargolab gallery` writes them
 GRAIN = (196, 176, 150)
 EDGE = 0.025  # space between the cards, relative to the window's height
 FOOT, TITLE = 3.1, 0.68  # height of the text below a poster and of the title's letters, relative to the name's letters
@@ -108,9 +106,9 @@ class Chooser:
 
 
 def _poster(name: str, size: tuple[int, int]) -> Image.Image:
-    """The preset's poster from the gallery, or a sketch of its tank."""
-    path = POSTERS / f"{name.replace('/', '-')}.webp"
-    if path.exists():
+    """The preset's poster or a sketch of its tank."""
+    path = poster(name)
+    if path:
         return ImageOps.fit(Image.open(path).convert("RGB"), (size[0] - 1, size[1] - 1))
     return _sketch(name, (size[0] - 1, size[1] - 1))
 
