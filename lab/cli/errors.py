@@ -15,7 +15,7 @@ from lab.base.interrupt import exit_code, handling_signals
 from lab.base.text import one_line
 from lab.plugins.loading import asking
 from lab.preset.formats import OldFormat
-from solvers.machine.errors import BadState, Unavailable
+from solvers.machine.errors import BadState, NotLoaded, Unavailable
 
 
 class Commands(click.Group):
@@ -39,7 +39,7 @@ class Commands(click.Group):
             code = _say(sentence, exit_code())
         except click.ClickException as error:
             code = _say(error.format_message(), 2)
-        except (LabError, Unavailable) as error:
+        except (LabError, Unavailable, NotLoaded) as error:
             code = _say(str(error), 2)
         except BadState as error:
             code = _say(str(error), 1)

@@ -23,5 +23,9 @@ class Unavailable(Told, ValueError):
     """This machine or scene cannot provide what was asked for; the message is one sentence with the remedy."""
 
 
+class NotLoaded(Told, ImportError):
+    """Taichi cannot be loaded on this machine; the message is one sentence with the remedy."""
+
+
 class BadOutline(Told, ValueError):
     """An outline that no grain, or no contact rule, can use; the message is one sentence."""

@@ -14,6 +14,16 @@ import textwrap
 from functools import cache
 from types import FrameType, SimpleNamespace
 
+from solvers.machine.errors import NotLoaded
+
+
+def _not_loaded(error: ImportError) -> NotLoaded:
+    """Taichi is not there, or a library of the system that it is linked to is not: mostly X11's, without a desktop."""
+    remedy = "libx11-6" if "libX11" in str(error) else "the package that holds it"
+    system = f"it is linked to a library that this machine lacks; on Debian and Ubuntu: sudo apt install {remedy}"
+    missing = "cannot open shared object file" in str(error)
+    return NotLoaded(f"Taichi cannot be loaded ({error}): {system if missing else 'install cargo-shift-lab anew'}.")
+
 
 def _line_alone(frame: FrameType, context: int = 1) -> inspect.Traceback:
     """`inspect.getframeinfo`, with the one line that runs, and without a search through all modules for its file."""
@@ -27,6 +37,8 @@ inspect.getframeinfo = _line_alone  # while Taichi is loaded, whose own function
 try:
     from taichi.lang import impl, kernel_impl, snode
     from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
+except ImportError as error:
+    raise _not_loaded(error) from error
 finally:
     inspect.getframeinfo = _usual
 

@@ -5,6 +5,9 @@ A motion moves one coordinate of the tank (`coordinate`: "y" or "z", or "turn" a
 `fastest`, from which the step is derived. A `history.History` is not a motion itself but a record of several.
 """
 
+from solvers.machine import runtime  # noqa: F401 (first: a Taichi that cannot be loaded is told there)
+
+# isort: split
 from solvers.motion.harmonic import Heave, Pitch, Roll, Surge, Sway, Yaw
 from solvers.motion.tilt import Tilt
 
