@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from lab.sweeps.calibration_report import Calibration
     from lab.sweeps.result import SweepResult
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 provide_for_matplotlib()
 
