@@ -1,5 +1,5 @@
 # Two commands do everything on a fresh machine: `make demo` and `make test`.
-.PHONY: demo test same docs docs-links clean
+.PHONY: demo test same docs docs-links wheel try-wheel clean
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -33,9 +33,31 @@ docs: $(VENV)/installed-docs
 docs-links: $(VENV)/installed-docs
 	$(BIN)/sphinx-build --quiet --builder linkcheck docs docs/_build/links
 
+# What a release hands out, in dist/: the wheel and the source's archive, checked
+wheel: $(VENV)/installed-release
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist .
+	$(BIN)/twine check --strict dist/*.whl dist/*.tar.gz
+	$(BIN)/check-wheel-contents dist/*.whl
+
+# The wheel in an environment of its own, outside of the source: make try-wheel PYTHON=python3.12
+TRY = dist/try-$(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+try-wheel:
+	@test -n "$$(ls dist/*.whl 2>/dev/null)" || { echo "There is no wheel in dist/: make wheel"; exit 1; }
+	rm -rf $(TRY) && $(PYTHON) -m venv $(TRY)
+	$(TRY)/bin/pip install --quiet --disable-pip-version-check dist/*.whl
+	cd $(TRY) && bin/cargolab doctor && bin/cargolab list && bin/cargolab run tilting/quick
+	cd $(TRY) && bin/cargolab export renders/tilting/quick --to csv
+
+# Without a Python that Taichi has wheels for, uv gets one, if it is there.
+NEEDED := Python 3.11, 3.12 or 3.13 is needed, since Taichi has no wheels for others
+REMEDY := install uv (https://docs.astral.sh/uv), which gets one, or name one: make demo PYTHON=/path/to/python3.12
 $(VENV)/bin/pip:
-	@test -n "$(PYTHON)" || { echo "Python 3.11, 3.12 or 3.13 is needed (Taichi has no wheels for others): install one, or name it: make demo PYTHON=/path/to/python3.12"; exit 1; }
-	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "Python cannot make a virtual environment: sudo apt install python3-venv"; exit 1; }
+	@if test -n "$(PYTHON)"; then \
+		$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "Python cannot make a virtual environment: sudo apt install python3-venv"; exit 1; }; \
+	elif command -v uv >/dev/null; then \
+		uv venv --quiet --seed --python 3.13 $(VENV) || { rm -rf $(VENV); echo "uv could not get a Python 3.13. $(NEEDED): name one: make demo PYTHON=/path/to/python3.12"; exit 1; }; \
+	else echo "$(NEEDED): $(REMEDY)"; exit 1; fi
 
 $(VENV)/installed: pyproject.toml | $(VENV)/bin/pip
 	$(INSTALL) .
@@ -49,5 +71,9 @@ $(VENV)/installed-docs: pyproject.toml | $(VENV)/bin/pip
 	$(INSTALL) '.[docs]'
 	@touch $@ $(VENV)/installed
 
+$(VENV)/installed-release: | $(VENV)/bin/pip
+	$(BIN)/pip install --quiet --disable-pip-version-check 'build>=1.2' 'twine>=6' 'check-wheel-contents>=0.6'
+	@touch $@
+
 clean:
-	rm -rf $(VENV) docs/_build
+	rm -rf $(VENV) docs/_build dist
