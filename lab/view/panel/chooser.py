@@ -1,5 +1,7 @@
 """The first page of the window: every preset with its poster, to choose one from."""
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 from PIL import Image, ImageDraw, ImageOps
 
@@ -10,7 +12,7 @@ from lab.preset.find import QUICK, load, names
 from lab.preset.schema import Preset
 
 COLUMNS, ROWS = 4, 3
-GRAIN = (196, 176, 150)
+GRAIN, WATER = (196, 176, 150), (154, 196, 222)
 EDGE = 0.025  # space between the cards, relative to the window's height
 FOOT, TITLE = 3.1, 0.68  # height of the text below a poster and of the title's letters, relative to the name's letters
 
@@ -113,18 +115,23 @@ def _poster(name: str, size: tuple[int, int]) -> Image.Image:
     return _sketch(name, (size[0] - 1, size[1] - 1))
 
 
-def _filling(preset: Preset) -> list[tuple[float, float]]:
-    """Corners (m) of a box as wide as the tank and as high as its grains."""
-    outline, depth = np.array(preset.tank.corners), preset.grains.depth or 0.4 * preset.tank.extent[1]
-    low, high = outline.min(axis=0), outline.max(axis=0)
-    return [low, (high[0], low[1]), (high[0], low[1] + depth), (low[0], low[1] + depth)]
+def _fillings(preset: Preset) -> Iterator[tuple[tuple[int, int, int], Sequence[tuple[float, float]]]]:
+    """Colour and corners (m) of what fills the tank: its water, then its cargo over that."""
+    corners = np.array(preset.tank.corners)
+    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+    for colour, matter in ((WATER, preset.water), (GRAIN, preset.bulk), (GRAIN, preset.grains)):
+        depth = matter and (matter.depth or (0.4 * (high - low) if matter is preset.grains else None))
+        if matter and matter.region:
+            yield colour, matter.region
+        elif depth:
+            yield colour, [(left, low), (right, low), (right, low + depth), (left, low + depth)]
 
 
 def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
     """A sketch of the tank, its filling and its moving parts."""
     preset = load(name).resolved
     outline = np.array(preset.tank.corners)
-    image = Image.new("RGB", size, palette.HOLD)
+    image, inside = Image.new("RGB", size, palette.HOLD), Image.new("RGB", size, palette.PAPER)
     draw, middle = ImageDraw.Draw(image), 0.5 * (outline.min(axis=0) + outline.max(axis=0))
     scale = 0.8 * float((np.array(size) / np.ptp(outline, axis=0)).min())
 
@@ -132,9 +139,11 @@ def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
         away = (np.asarray(points) - middle) * scale
         return [(0.5 * size[0] + x, 0.5 * size[1] - y) for x, y in away]
 
-    draw.polygon(placed(outline), fill=palette.PAPER)
-    if preset.grains:
-        draw.polygon(placed(preset.grains.place or _filling(preset)), fill=GRAIN)
+    for colour, corners in _fillings(preset):
+        ImageDraw.Draw(inside).polygon(placed(corners), fill=colour)
+    mask = Image.new("1", size)
+    ImageDraw.Draw(mask).polygon(placed(outline), fill=1)
+    image.paste(inside, mask=mask)
     draw.line([*placed(outline), placed(outline)[0]], fill=palette.WALL, width=3)
     for part in preset.parts.values():
         draw.line(placed(part.line), fill=palette.PART, width=3)
