@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cargolab._plugins import colour, law, measure, plugin, quantity
+from cargolab._plugins import colour, law, measure, motion, plugin, quantity
 from cargolab._preset import Preset
 from cargolab._simulation import Simulation
 from lab import __version__, dotted, resume, run, sweep
@@ -34,6 +34,7 @@ __all__ = [
     "hull",
     "law",
     "measure",
+    "motion",
     "open",
     "plugin",
     "presets",

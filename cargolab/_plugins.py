@@ -1,6 +1,6 @@
 """Measures, quantities, colours, laws and motions of one's own, from a file that a preset names or from a notebook."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TypeVar
 
@@ -90,3 +90,28 @@ def law(kind: str, name: str) -> Callable[[Kind], Kind]:
         return law
 
     return register
+
+
+def motion(
+    function: Function | None = None,
+    *,
+    moves: str | Mapping[str, str] = "roll",
+    unit: str = "",
+    parameters: Mapping[str, str] | None = None,
+    name: str = "",
+) -> Function:
+    """A prescribed motion of the tank, a table of [motion] by its name: a function of the time (s).
+
+    `@cargolab.motion(moves="roll", unit="deg", parameters={"amplitude": "deg", "period": "s"})` over `def jerk(time,
+    amplitude, period): …`; parameters come and places go in the units said, m or rad without one. moves: sway, heave,
+    surge, roll, pitch or yaw, or several with their units, then it returns a tuple. A class is one of the manual's
+    recipe.
+    """
+
+    def register(function: Function) -> Function:
+        from lab.preset.python.motions import register
+
+        register(name or function.__name__, function, moves, unit, parameters or {})
+        return function
+
+    return register if function is None else register(function)

@@ -42,12 +42,26 @@ def from_table(table: object) -> "Preset":
         kept = formats.recorded(table) if isinstance(table, Mapping) else table
         if isinstance(kept, Mapping):
             admit(kept.get("plugins") or ())
+            _check_motions(kept.get("motion"))
         return _model().validate_json(json.dumps(kept), strict=True)
     except ValidationError as error:
         first = error.errors()[0]
         raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None
     except (RecursionError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(str(error)) from error
+
+
+def _check_motions(motion: object) -> None:
+    """Raise LabError for a motion of a plug-in that is not loaded, by which the tank would stand still unsaid."""
+    from lab.preset.sections.motion import Motion
+
+    known = taken_of(Motion)
+    for name, part in motion.items() if isinstance(motion, Mapping) else ():
+        if part is not None and name not in known:
+            raise LabError(
+                f"motion.{name}: is of a plug-in that is not loaded, as one defined in a notebook: define it there, or "
+                "load its file by cargolab.plugin."
+            )
 
 
 def resolved_from(table: object) -> "Preset":

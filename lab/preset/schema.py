@@ -6,7 +6,7 @@ it to files and reads it back. What follows from the keys is a property; of what
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from operator import attrgetter
 from typing import Annotated
@@ -34,7 +34,7 @@ from lab.preset.sections.motion import Motion, check_motion
 from lab.preset.sections.naval.ship_checks import check_ship
 from lab.preset.sections.naval.stability import Stability, check_stability
 from lab.preset.sections.parts import Part, check_parts
-from lab.preset.sections.run import Run, duration_of
+from lab.preset.sections.run import Run, duration_of, with_ends
 from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
 from lab.preset.sections.ship import Ship
@@ -228,6 +228,7 @@ def resolve(table: Mapping) -> Preset:
     """
     check_keys(Preset, table)
     preset = read(Preset, table)
+    preset = replace(preset, motion=with_ends(preset.run, preset.motion))
     check(preset)
     return preset
 
@@ -277,7 +278,7 @@ def _check_of_grains(preset: Preset) -> None:
     settle = preset.run.settles
     check_grains(preset.grains, bool(preset.shape_classes), settle)
     check_layers(preset.grains, preset.kinds)
-    sizes = preset.sizes, preset.mean_diameter, preset.hold, _size_key(preset)
+    sizes = preset.sizes, preset.mean_diameter, preset.hold, shapes.size_key(preset)
     check_room(preset.grains, *sizes, settle, preset.stiffness_scale)
     check_dissipation(preset.material, "material", needed=True)
     check_dissipation(preset.wall, "wall", needed=False)
@@ -285,15 +286,3 @@ def _check_of_grains(preset: Preset) -> None:
     check_kinds(preset.kinds, preset.material)
     if preset.grains.listed:
         check_listed_kinds(preset.grains.listed, len(preset.kinds))
-
-
-def _size_key(preset: Preset) -> str:
-    """The key that sets the size of the largest grains."""
-    if preset.shapes:
-        sizes = preset.shape_classes
-        return f"shapes.{max(sizes, key=lambda name: sizes[name].diameter)}.diameter"
-    if preset.grains.table is not None:
-        return "grains.table"
-    largest = max(preset.kinds.items(), key=lambda item: item[1].diameter or 0.0, default=("", None))
-    own = largest[1] is not None and (largest[1].diameter or 0.0) > (preset.grains.diameter or 0.0)
-    return f"kinds.{largest[0]}.diameter" if own else "grains.diameter"

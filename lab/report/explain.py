@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Iterator
+from math import pi
 
 from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
@@ -16,6 +17,7 @@ from lab.report.ship import describe
 from lab.report.wet import bed
 from solvers.motion.frame import is_turn
 from solvers.motion.history import Recorded
+from solvers.motion.sampled import Sampled
 from solvers.simulation import Simulation
 
 PRECISIONS = {
@@ -142,6 +144,13 @@ def _motion(name: str, motion, soft_start: float) -> str:
     words = f"{name}, up to {show(motion.fastest(soft_start), 'rad/s' if turns else 'm/s')}"
     if isinstance(motion, Recorded):
         words += f" and {motion.hardest():.3g} {'rad' if turns else 'm'}/s²"
+    if isinstance(motion, Sampled):
+        unit = "deg" if turns else "mm"
+        away = motion.place_error * (180.0 / pi if turns else 1e3)
+        words += (
+            f" (a function in {len(motion.time)} samples, off by up to {away:.1g} {unit}, and by "
+            f"{100.0 * motion.acceleration_error:.1g} % of its acceleration)"
+        )
     return words
 
 

@@ -223,8 +223,9 @@ def _scene(recording: Recording) -> Iterator[str]:
     yield f"tank {width} wide and {height} high{lidless}{rough}"
     if recording.parts:
         yield f"moving parts: {inline(', '.join(recording.parts))}"
-    for name in OF_TANK:
-        if motion := getattr(recording.preset.motion, name):
+    moved = {name: getattr(recording.preset.motion, name) for name in OF_TANK} | recording.preset.motion.own
+    for name, motion in moved.items():
+        if motion:
             yield f"{name}: {_settings(motion)}"
     if recording.preset.ship:
         yield f"sway, heave and roll of the ship are those of her axis, {axis_place(recording.preset.ship)}"

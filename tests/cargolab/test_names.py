@@ -24,6 +24,7 @@ NAMES = {
     "colour": ("function", "label", "name"),
     "law": ("kind", "name"),
     "measure": ("function", "unit", "of", "when", "name"),
+    "motion": ("function", "moves", "unit", "parameters", "name"),
     "plugin": ("path",),
     "quantity": ("function", "unit", "label", "name"),
     "Preset": ("of", "overrides"),

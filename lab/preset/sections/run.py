@@ -1,7 +1,7 @@
 """The run of a preset: duration, repeats, step, accuracy and device."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 from lab.base.errors import LabError
@@ -71,4 +71,16 @@ def duration_of(run: Run, motion: Motion) -> float:
         raise LabError('run.duration: missing, and no motion has an end of its own; give e.g. "8 s".')
     if motion.history:
         check_end(motion.history.history, derived)
+    for part in motion.own.values():
+        if hasattr(part, "motions"):
+            check_end(part, derived)
     return derived
+
+
+def with_ends(run: Run, motion: Motion) -> Motion:
+    """The motion, with those of plug-ins that have no end of their own ending with the run. Raises LabError."""
+    endless = [name for name, part in motion.own.items() if getattr(part, "end", 0.0) is None]
+    if not endless:
+        return motion
+    length = duration_of(run, replace(motion, **dict.fromkeys(endless)))
+    return replace(motion, **{name: replace(getattr(motion, name), end=length) for name in endless})

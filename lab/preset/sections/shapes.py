@@ -248,3 +248,15 @@ def _check_shapely(preset) -> None:
             "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "
             "disturbed, or leave out the shapes."
         )
+
+
+def size_key(preset) -> str:
+    """The key of a preset (`lab.preset.schema.Preset`) that sets the size of the largest grains."""
+    if preset.shapes:
+        sizes = preset.shape_classes
+        return f"shapes.{max(sizes, key=lambda name: sizes[name].diameter)}.diameter"
+    if preset.grains.table is not None:
+        return "grains.table"
+    largest = max(preset.kinds.items(), key=lambda item: item[1].diameter or 0.0, default=("", None))
+    own = largest[1] is not None and (largest[1].diameter or 0.0) > (preset.grains.diameter or 0.0)
+    return f"kinds.{largest[0]}.diameter" if own else "grains.diameter"

@@ -12,6 +12,7 @@ from lab.preset.sections.history import Record
 from lab.preset.sections.motion import Motion
 from lab.preset.units import show
 from solvers.motion import IN_SPACE
+from solvers.motion.frame import OF_SPACE
 
 PLANE_ALONE = {
     "axle": "a tank on an axle is computed in the plane alone",
@@ -128,6 +129,9 @@ def _bodies_in_space(preset) -> Iterator[str]:
 def _in_space(motion: Motion) -> Iterator[str]:
     """The keys of motions that the plane does not have."""
     yield from (f"motion.{name}" for name in IN_SPACE if getattr(motion, name))
+    for name, part in motion.own.items():
+        parts = part.motions if hasattr(part, "motions") else {name: part}
+        yield from (f"motion.{name}" for one in parts.values() if one.coordinate in OF_SPACE)
     yield from (f"motion.history.file: column {column}" for column in _columns_in_space(motion.history))
 
 
