@@ -33,7 +33,7 @@ from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_diss
 from lab.preset.sections.motion import Motion, check_motion
 from lab.preset.sections.naval.ship_checks import check_ship
 from lab.preset.sections.naval.stability import Stability, check_stability
-from lab.preset.sections.parts import Part, check_parts
+from lab.preset.sections.parts import Part, check_parts, furnished
 from lab.preset.sections.run import Run, duration_of, with_ends
 from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
@@ -227,7 +227,7 @@ def resolve(table: Mapping) -> Preset:
     Raises LabError, one sentence with the dotted key.
     """
     check_keys(Preset, table)
-    preset = read(Preset, table)
+    preset = furnished(read(Preset, table))
     preset = replace(preset, motion=with_ends(preset.run, preset.motion))
     check(preset)
     return preset

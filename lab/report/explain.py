@@ -10,6 +10,7 @@ from lab.assembly.water import most_drops
 from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
+from lab.preset.sections.solids.funnel import caution, in_words
 from lab.preset.units import show
 from lab.report import cost, free, water
 from lab.report.cargo import bulk, coarse, grains
@@ -103,6 +104,7 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     rows += [
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
         ("tank", _tank(preset, scene)),
+        *_funnel(preset),
         *(grains.described(preset, scene) if preset.grains else []),
         *(water.described(preset, scene) if preset.water else []),
     ]
@@ -137,6 +139,16 @@ def _tank(preset, scene) -> str:
     if moving:
         what.append(f"with {', '.join(moving)}")
     return ", ".join(what)
+
+
+def _funnel(preset) -> list[tuple[str, str]]:
+    """The rows on the tank's funnel; none without one."""
+    funnel, warned = preset.tank.funnel, None
+    if funnel is None:
+        return []
+    if preset.grains:
+        warned = caution(funnel, preset.diameters[1])
+    return [("funnel", in_words(funnel, preset.tank.corners)), *([("warning", warned)] if warned else [])]
 
 
 def _motion(name: str, motion, soft_start: float) -> str:

@@ -1,7 +1,7 @@
 """The parts in the tank, as a preset gives them, and their checks."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, make_dataclass
+from dataclasses import dataclass, make_dataclass, replace
 from math import isfinite
 from typing import Annotated
 
@@ -11,6 +11,8 @@ from lab.preset.sections.bodies import floating as bodies
 from lab.preset.sections.bodies import hulls
 from lab.preset.sections.bodies.in_space import circle, faults_in_space, shape_of
 from lab.preset.sections.history import Record, check_record, check_start
+from lab.preset.sections.solids.funnel import NAMES
+from lab.preset.sections.tank import check_tank
 from lab.preset.units import needed, show
 from solvers.machine.marks import Doc
 from solvers.motion import MOTIONS
@@ -73,6 +75,26 @@ KEYS.append(("history", Annotated[Record | None, Doc("Its motion from a file.")]
 Part = make_dataclass("Part", KEYS, bases=(PartGroup,), frozen=True)
 """A part, with its motions, any of which may be left out."""
 Part.__module__ = __name__  # so that it can be sent to another process
+
+
+def furnished(preset):
+    """The preset with the parts of the tank's funnel, and its grains in it. Raises LabError.
+
+    `lab.preset.schema.Preset`, of which all that follows from the funnel's keys are keys, too: a recording has them.
+    """
+    tank, grains = preset.tank, preset.grains
+    if tank.funnel is None:
+        return preset
+    check_tank(tank)
+    if twice := [name for name in NAMES if name in preset.parts]:
+        raise LabError(f"parts.{twice[0]}: tank.funnel has a part of this name; call it otherwise.")
+    port, starboard, gate = tank.funnel.plates(tank.corners)
+    drop = {"move": (0.0, -tank.funnel.way(tank.corners)), "start": tank.funnel.opens}
+    drop |= {"speed": tank.funnel.speed, "acceleration": tank.funnel.acceleration}
+    made = dict(zip(NAMES, (Part(port), Part(starboard), Part(gate, **drop)), strict=True))
+    if grains is not None and not (grains.region or grains.bed or grains.depth or grains.room):
+        grains = replace(grains, region=tank.funnel.inside(tank.corners))
+    return replace(preset, parts={**made, **preset.parts}, grains=grains)
 
 
 def parts_of(preset) -> tuple[solved.Body, ...]:

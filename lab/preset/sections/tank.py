@@ -9,6 +9,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.fields import Columns, Of, Table
 from lab.preset.outline import Point, rectangle, simple_polygon
+from lab.preset.sections.solids.funnel import Funnel, check_funnel
 from lab.preset.sections.solids.mesh import COLUMNS, MOST, UNITS, mesh_of
 from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit, Usual
@@ -121,6 +122,7 @@ class Tank(Shell):
         Thickness | None,
         Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it, 1 m if empty."),
     ] = None
+    funnel: Annotated[Funnel | None, Doc("A funnel that stands in the tank, with the grains in it.")] = None
 
     @property
     def lies(self) -> bool:
@@ -200,9 +202,11 @@ class FurtherTank(Shell):
 
 
 def check_tank(tank: Shell) -> None:
-    """Raise LabError for an invalid outline, a lid that cannot be left out, or a lining that does not fit."""
+    """Raise LabError for an invalid outline, a lid that cannot be left out, or a funnel or lining that does not fit."""
     if not tank.lid and not tank.open_edges:
         raise LabError("tank.lid: this outline has no edge along its top to leave open; leave lid out.")
+    if getattr(tank, "funnel", None):
+        check_funnel(tank)
     outline = np.array(tank.corners)
     if getattr(tank, "roughness", None) is None:
         return

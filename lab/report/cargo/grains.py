@@ -9,6 +9,7 @@ from lab.base.text import inline
 from lab.preset.accuracy import LEVELS
 from lab.preset.schema import Preset
 from lab.preset.sections.shapes import ShapeClass, caution
+from lab.preset.sections.solids.funnel import caution as arching
 from lab.preset.units import show
 from lab.recording import Recording
 from lab.report.numbers import count_of
@@ -151,6 +152,9 @@ def cautions(recording: Recording) -> Iterator[str]:
     scale = recording.preset.stiffness_scale
     if scale < 1:
         yield f"The grains are softer than their material: Young's moduli times {scale:g}, {_softened(recording)}."
+    funnel = recording.preset.tank.funnel
+    if funnel and (narrow := arching(funnel, recording.preset.diameters[1])):
+        yield narrow
     rule = recording.preset.contact.outlines
     if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
         yield rough

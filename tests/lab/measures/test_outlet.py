@@ -143,3 +143,17 @@ def test_the_rate_follows_beverloos_law_in_a_plane(tmp_path):
     slope, intercept = np.polyfit(2 * HALF / diameter, scaled, 1)
     np.testing.assert_allclose(scaled, slope * 2 * HALF / diameter + intercept, rtol=0.05)
     assert 0.0 < -intercept / slope < 2.0
+
+
+@pytest.mark.slow
+def test_a_sweep_over_the_outlet_of_a_funnel_gives_its_discharge(tmp_path):
+    """By the same law, with C and k that hold for the grains: wider outlets carry more, as (D/d - k)^(3/2)."""
+    given = {"run": {"repeats": 2, "duration": "1.5 s", "accuracy": "draft"}, "grains": {"count": 1500}}
+    widths = {"tank.funnel.outlet": "24, 36, 54 mm"}
+    result = lab.sweep("funnel/discharge", widths, tmp_path / "sweep", video=False, quiet=True, **given)
+    outlet = np.array([row["outlet_width (d)"] for row in result.rows])
+    np.testing.assert_allclose(outlet, [4.0, 6.0, 9.0], rtol=0.03)  # in mean diameters as drawn
+    scaled = np.array([row["flow_rate (1/s)"] for row in result.rows]) ** (2 / 3)
+    slope, intercept = np.polyfit(outlet, scaled, 1)
+    np.testing.assert_allclose(scaled, slope * outlet + intercept, rtol=0.05)
+    assert 0.0 < -intercept / slope < 2.0

@@ -21,6 +21,9 @@ BIG = {"kinds.big.diameter": "300 mm", "kinds.big.share": 0.5, "grains.table": F
 BIG |= {"grains.distribution": "uniform", "tank.along": "1 m", "tank.height": "310 mm"}
 TABLE = {"grains.table": [["6 mm", 1], ["8 mm", 1]], "grains.distribution": "table"}
 YAW = {"amplitude": "5 deg", "frequency": "1 Hz"}
+VANE = {"points": [["20 mm", "60 mm"], ["40 mm", "90 mm"]]}
+LID = {"points": [["-20 mm", "60 mm"], ["20 mm", "60 mm"]], "move": ["1 mm", "0 mm"]}
+LID |= {"speed": "1 m/s", "acceleration": "1 m/s^2"}
 AFT = {"width": "100 mm", "height": "100 mm", "length": "100 mm"}
 
 LEVEL = {"gauges.L1.kind": "level", "gauges.L1.y": "210 mm", "gauges.L1.x": "0 mm"}
@@ -76,8 +79,8 @@ def gauge(**keys) -> dict[str, object]:
         (CHICKPEAS, {**BIG, "material.restitution": 0.5}, "kinds.big.diameter: grains of up to 300 mm do not fit"),
         ("tilting/quick", {"tank.periodic": True}, "tank.periodic: goes with the length of a slice; give tank.along"),
         ("tilting/quick", {"contact.twisting": "marshall"}, "contact.twisting: grains twist in space alone"),
-        ("space/silo", {"parts.left": False}, "parts.right.points: in a tank that is turned each part has its like"),
-        ("space/silo", {"parts.gate.move": ["1 mm", "0 mm"]}, "parts.gate: in a tank that is turned a part moves up"),
+        ("space/silo", {"parts.vane": VANE}, "parts.vane.points: in a tank that is turned each part has its like"),
+        ("space/silo", {"parts.lid": LID}, "parts.lid: in a tank that is turned a part moves up"),
         (CHICKPEAS, {"grains.depth": "1 m"}, "grains.depth: 1 m must be less than the tank's height"),
         ("space/silo", {"grains.count": 900_000}, "grains.count: 900000 grains do not fit into the region"),
         (
