@@ -90,7 +90,7 @@ def furnished(preset):
         raise LabError(f"parts.{twice[0]}: tank.funnel has a part of this name; call it otherwise.")
     port, starboard, gate = tank.funnel.plates(tank.corners)
     drop = {"move": (0.0, -tank.funnel.way(tank.corners)), "start": tank.funnel.opens}
-    drop |= {"speed": tank.funnel.speed, "acceleration": tank.funnel.acceleration}
+    drop |= {"speed": tank.funnel.gate_speed, "acceleration": tank.funnel.gate_acceleration}
     made = dict(zip(NAMES, (Part(port), Part(starboard), Part(gate, **drop)), strict=True))
     if grains is not None and not (grains.region or grains.bed or grains.depth or grains.room):
         grains = replace(grains, region=tank.funnel.inside(tank.corners))

@@ -48,8 +48,8 @@ class Funnel:
     drop: Annotated[
         Length | None, Doc("How far its gate drops; through the floor, by the outlet's width, without it.")
     ] = None
-    speed: Annotated[float, Unit("m/s"), Interval(gt=0), Doc("Top speed of its gate.")] = 10.0
-    acceleration: Annotated[
+    gate_speed: Annotated[float, Unit("m/s"), Interval(gt=0), Doc("Top speed of its gate.")] = 10.0
+    gate_acceleration: Annotated[
         float, Unit("m/s^2"), Interval(gt=0), Doc("How fast its gate speeds up; grains must not fall faster.")
     ] = 50.0
 
