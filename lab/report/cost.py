@@ -15,6 +15,7 @@ from solvers.bulk.given import Bulk
 from solvers.fluid.timestep import steps_of_water
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.simulation import Simulation
+from solvers.time.compiled import taken
 from solvers.time.schedules import choose_schedule, units_a_world
 
 # Grain-steps a second of one core on settled beds: between a Xeon of 2.5 GHz (15e6) and newer ones (37e6 and more;
@@ -22,6 +23,7 @@ from solvers.time.schedules import choose_schedule, units_a_world
 GRAIN_STEPS_PER_CORE = {2: 20e6, 3: 6e6}  # by the scene's axes
 OUTLINES_PER_CORE = {"continuous": 3e6, "nodes": 3e6, "area": 3e6}  # of irregular grains
 DROP_STEPS_PER_CORE = 1.1e6  # particle-steps of water a second of one core
+KEPT = 0.4  # of the time of compiling: to trace kernels that are kept, and to make them code of the processor
 # Other parts of a run, in seconds of CPU time of one core (AMD EPYC, Zen 5): to start Python, its libraries and Taichi,
 # to compile the kernels when they are new, and in addition those of a ship
 STARTING = 2.0
@@ -41,7 +43,8 @@ class Cost:
     """What a run costs: `particles` of all its beds, `step` (s), `steps`, `memory` of arrays and size of the
     `recording` (MiB), `seconds` by part, `settling` (s) at most for a new bed, and the `cores` it uses.
 
-    The seconds are estimates for one core of an AMD EPYC (Zen 5), with kernels compiled anew and a film.
+    The seconds are estimates for one core of an AMD EPYC (Zen 5), with a film. Compiling takes what it took on this
+    machine for such a scene, or for one of the same matters, if there was any.
     """
 
     particles: int
@@ -110,6 +113,7 @@ def described(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
             * bool(count)
         ),
         *([("steps", f"{_steps(scene, preset.duration):.3g}")] if not preset.grains else []),
+        ("kernels", _kernels(preset, simulation)),
         ("memory", memory_of(simulation, worlds, count, what)),
         ("recording", _size(_recorded(preset, scene))),
         ("run time", f"about {_span(sum(seconds.values()))} on {_cores(preset)} core(s): {parts}"),
@@ -139,18 +143,34 @@ def _size(kept: float) -> str:
 
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
-    """Seconds that a run takes, by its parts, without settling; kernels are compiled anew and all pictures painted."""
-    of_grains = scene.grains.shapes.contact if scene.grains and scene.grains.shapes else "discs"
-    rule = of_grains if not scene.fluid else "both" if scene.grains else "water"
-    more = COMPILING_SHIP * bool(preset.ship) + COMPILING_SPHERES * (scene.axes > 2)
+    """Seconds that a run takes, by its parts, without settling; all pictures are painted."""
     duration, record = preset.duration, preset.record
     found = {
-        "to start and compile": STARTING + COMPILING[rule] + more,
+        "to start and compile": STARTING + _compiling(preset, scene, simulation),
         "of steps": _stepping(duration, preset, scene) + duration * record.series_rate * SAMPLE,
     }
     if preset.ship:
         found["of her hull and water"] = _floating(preset, simulation)
     return found | {"of figures": REPORTING, "of pictures": duration * record.picture_rate * PICTURE[scene.axes]}
+
+
+def _compiling(preset, scene, simulation: Simulation) -> float:
+    """Seconds to compile the kernels, or to read them where they are kept."""
+    kept, seconds = taken(simulation, preset.run.repeats)
+    if seconds is None:
+        of_grains = scene.grains.shapes.contact if scene.grains and scene.grains.shapes else "discs"
+        rule = of_grains if not scene.fluid else "both" if scene.grains else "water"
+        seconds = COMPILING[rule] + COMPILING_SHIP * bool(preset.ship) + COMPILING_SPHERES * (scene.axes > 2)
+    return KEPT * seconds if kept else seconds
+
+
+def _kernels(preset, simulation: Simulation) -> str:
+    """Whether the kernels must be compiled, and what that takes."""
+    kept, seconds = taken(simulation, preset.run.repeats)
+    if kept:
+        return f"kept from an earlier run of this kind, where they took {_span(seconds)} to compile"
+    like = f", about {_span(seconds)} as for like scenes on this machine" if seconds is not None else ""
+    return f"to be compiled{like}; they are kept, also for other sizes and materials"
 
 
 def _steps(scene, duration: float) -> float:

@@ -25,10 +25,12 @@ from lab.recording.ship_end import VERBS
 from lab.runs.beds import settled, settling
 from lab.runs.checkpoint import Checkpoint, remove_checkpoint
 from lab.runs.run import Run
+from solvers.machine import compiling
 from solvers.machine.errors import BadState
 from solvers.machine.state import without_worlds
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from solvers.time import compiled
 from solvers.time.schedules import work
 
 # Steps per call of the solver times grains per world: a delay after Ctrl-C of some tenths of a second for each world on
@@ -67,6 +69,7 @@ class Batch:
         run, longest = preset.run, largest_multiple(preset)
         self._simulate = partial(Simulation, threads=run.threads, arch=run.arch, largest_multiple=longest)
         self._settling, self._saved = settling(preset), time.monotonic()
+        self._compiled, self._noted = compiling.seconds(), False
         self._a_call = GRAIN_STEPS_A_CALL * runs[0].scene.worlds // work(runs[0].scene)
 
     def start(self, kept: Checkpoint | None) -> None:
@@ -148,6 +151,7 @@ class Batch:
                 break
             self._write(rows, k % a_frame == 0)
             self._count_cost()
+            self._note_compiled()
             self.progress.reach(self._simulation.time)
             self._end_lost(rows, k % a_frame == 0)
             if tell(rows):
@@ -223,6 +227,12 @@ class Batch:
             recorder.wall_s += (now - self._counted) * work(run.scene) / whole
             recorder.grain_steps = updates(run.scene, self._simulation.steps)
         self._counted = now
+
+    def _note_compiled(self) -> None:
+        """After the first steps, note what their kernels took."""
+        if not self._noted and self._simulation.steps:
+            compiled.note(self._simulation, compiling.seconds() - self._compiled)
+            self._noted = True
 
     def _worlds(self) -> Iterator[slice]:
         """The worlds of each run in the simulation."""
