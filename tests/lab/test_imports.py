@@ -99,3 +99,12 @@ sys.exit(str([len(calls)]))
     assert loaded_by("import inspect, solvers.machine.runtime\nsys.exit(str([inspect.getframeinfo.__name__]))") == [
         "getframeinfo"
     ]
+
+
+def test_taichi_says_nothing_where_a_notebook_has_put_its_own_output():
+    """A kernel's sys.stdout is not the one that Python began with, which Taichi tells in a message of its own."""
+    heard = "import io, sys; sys.stdout = said = io.StringIO(); import solvers, taichi"
+    code = f"{heard}; sys.__stdout__.write(said.getvalue())"
+    root = Path(__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True)
+    assert done.stdout + done.stderr == ""
