@@ -9,11 +9,13 @@ import re
 from importlib import import_module
 from inspect import cleandoc
 
-from formula import inline, mathml
+from formula import FUNCTIONS, inline, mathml
 
 SOURCE = re.compile(r"\s\((?=[A-Z])([^()]*\b1[6-9]\d\d[^()]*|[^()]*\b20\d\d[^()]*)\)")
 LABEL = re.compile(r"(Limits|Units|Source): (.*)", re.DOTALL)
 WORD = re.compile(r"\b[a-z]{3,}\b")
+PLAIN = re.compile(r"(?<!_)\b[a-z]{3,}\b")
+FEW = 2  # words within a formula of an entry
 
 
 def text_of(thing: object) -> str:
@@ -87,14 +89,24 @@ def registry(name: str, table: str, level: str = "###") -> str:
 
 
 def things(name: str, *wanted: str) -> str:
-    """Classes and functions of a module, an entry of a list each, its paragraphs joined."""
+    """Classes and functions of a module, an entry of a list each; one that begins with a formula has it set."""
     return "\n".join(_entry(getattr(import_module(name), one), one) for one in wanted)
 
 
 def _entry(thing: object, name: str) -> str:
-    blocks = [paragraph(block) for block in re.split(r"\n\s*\n", text_of(thing))]
-    indented = "\n\n".join(blocks).replace("\n", "\n  ")
+    text = text_of(thing)
+    indented = (in_markdown(text) if _in_symbols(text) else _in_sentences(text)).replace("\n", "\n  ")
     return f"- `{name}`: {indented}\n"
+
+
+def _in_symbols(text: str) -> bool:
+    """Whether a docstring begins with a formula that is hardly interrupted by words."""
+    formula, _, _ = headline(re.split(r"\n\s*\n", text)[0])
+    return bool(formula) and len(set(PLAIN.findall(formula)) - FUNCTIONS) <= FEW
+
+
+def _in_sentences(text: str) -> str:
+    return "\n\n".join(paragraph(block) for block in re.split(r"\n\s*\n", text))
 
 
 def _file(thing: type) -> str:

@@ -1,9 +1,11 @@
 """How a ship floats with water in her rooms: heel, sinkage and trim, at each moment at rest (quasi-static).
 
 The water aboard is an added weight, with its centre where it lies level at that heel and trim; free surfaces are so
-counted exactly. Buoyancy is that of the whole hull, and
+counted exactly. Buoyancy is that of the whole hull:
 
-M + ρ Σ v_i = ρ ∇,   Σ moments of M, ρ v_i and ρ ∇ = 0 about both level axes.
+    M + ρ Σ v_i = ρ ∇
+
+and the moments of M, ρ v_i and ρ ∇ about both level axes are in balance.
 
 The method of lost buoyancy gives the same position: there water in a room that is open to the sea is no weight, and the
 room no part of the hull. What differs is told in `solvers.ship.flooding.residual`.

@@ -1,6 +1,6 @@
 """Cross-flooding: how long a duct takes to fill the room on the other side (IMO resolution MSC.362(92)).
 
-T = 2 W_f / (S F √(2 g H_0)) · (1 − √(h_f / H_0)) / (1 − h_f / H_0)
+    T = (2 W_f)/(S F √(2 g H_0)) (1 − √(h_f/H_0))/(1 − h_f/H_0)
 
 W_f is the volume that fills the room, S the area of the duct, H_0 the head when it begins and h_f that when it ends,
 F = 1/√Σk ≤ 1 how much friction slows the flow, k its coefficients. It is the integral of dW/dt = S F √(2 g H) with a

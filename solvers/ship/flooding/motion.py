@@ -1,10 +1,11 @@
 """A ship that sinks and heels faster than she comes to rest: heave and roll with added mass and drag.
 
-(M + ρ Σ v_i + A_33) z̈ = ρ g (∇ − Σ v_i) − M g − ½ ρ C_D S ż |ż|
-(I + A_44 + ρ Σ v_i r_i²) φ̈ = moment of buoyancy, weight and water − 2 ζ √((I + A_44) ρ g ∇_0 GM_0) φ̇
+    (M + ρ Σ v_i + A_33) z̈ = ρ g (∇ − Σ v_i) − M g − ½ ρ C_D S ż |ż|
+    (I + A_44 + ρ Σ v_i r_i²) φ̈ = K − 2 ζ √((I + A_44) ρ g ∇_0 GM_0) φ̇
 
-about her centre of gravity without the water; she keeps the trim in which she began. The water lies level and moves
-with her: its weight acts where it is, its mass is that of a point there. ∇_0 and GM_0 are hers before she floods.
+about her centre of gravity without the water, with the moment K of buoyancy, weight and water. She keeps the trim in
+which she began. The water lies level and moves with her: its weight acts where it is, its mass is that of a point
+there. ∇_0 and GM_0 are hers before she floods.
 
 Source: Newton's second law. Limits: added masses are given and constant; no waves, no sloshing, no force of the jet.
 Units: SI.

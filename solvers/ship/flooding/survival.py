@@ -1,8 +1,10 @@
 """Whether a damaged ship survives: the factor s of SOLAS II-1/7-2, from her righting levers with the water in her.
 
-s_final = K [GZ_max/0.12 m · Range/16°]^(1/4), with GZ_max and Range not above these; K is 1 up to a heel of θ_min and 0
-from θ_max on: 25° and 30° of a cargo ship, 7° and 15° of a passenger ship.
-s_intermediate = [GZ_max/0.05 m · Range/7°]^(1/4), 0 beyond a heel of 30° (cargo) or 15° (passenger).
+    s_final = K [GZ_max/0.12 m · Range/16°]^(1/4)
+    s_intermediate = [GZ_max/0.05 m · Range/7°]^(1/4)
+
+with GZ_max and Range not above these. K is 1 up to a heel of θ_min and 0 from θ_max on: 25° and 30° of a cargo ship, 7°
+and 15° of a passenger ship. s_intermediate is 0 beyond a heel of 30° (cargo) or 15° (passenger).
 
 Range is that of positive levers from the heel where she lies up to where they vanish, or to where an opening that
 cannot be closed goes under; GZ_max is the largest lever within it.
