@@ -36,7 +36,7 @@ TOKEN = re.compile(
     re.DOTALL,
 )
 OPENING, CLOSING = "([{", ")]}"
-SCRIPT = re.compile(rf"(?<=[A-Za-z0-9{GREEK}\u0300-\u0308)])_(?:\(|[A-Za-z0-9{GREEK}∞]+)|\^(?:\(|[-−]?[\w.∞]+)")
+SCRIPT = re.compile(rf"(?<=[A-Za-z0-9∇{GREEK}\u0300-\u0308)])_(?:\(|[A-Za-z0-9{GREEK}∞]+)|\^(?:\(|[-−]?[\w.∞]+)")
 SHARE = re.compile(r"<mfrac>(?:<mrow>)+<mn>\d+</mn>(?:</mrow>)+(?:<mrow>)+<m[ni]>\w+</m[ni]>(?:</mrow>)+</mfrac>")
 
 

@@ -17,7 +17,7 @@ from solvers.motion import IN_SPACE, MOTIONS
 
 DOCS = Path(__file__).parents[2] / "docs"
 sys.path.insert(0, str(DOCS / "_ext"))
-from docstrings import headline, in_markdown, text_of  # noqa: E402
+from docstrings import headline, in_markdown, text_of, things  # noqa: E402
 from formula import inline, mathml  # noqa: E402
 
 TABLES = {
@@ -100,3 +100,8 @@ def test_a_docstring_becomes_formula_source_and_sentences():
     formula, source, rest, limits = in_markdown(text_of(Law)).split("\n\n")
     assert "<math" in formula and source == "*Source:* Hooke 1678."
     assert (rest, limits) == ("A spring.", "*Limits:* small ξ.")
+
+
+def test_an_entry_of_a_list_has_its_formula_set_unless_it_is_a_sentence():
+    assert "<math" in things("solvers.mixture.drag.ergun", "Ergun")
+    assert "<math" not in things("solvers.ship.naval.grain_code", "heeling_arm")
