@@ -1,5 +1,5 @@
 # Two commands do everything on a fresh machine: `make demo` and `make test`.
-.PHONY: demo test same docs docs-links wheel try-wheel clean
+.PHONY: demo test same docs docs-links notebooks wheel try-wheel clean
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -52,6 +52,11 @@ try-wheel:
 # Without a Python that Taichi has wheels for, uv gets one, if it is there.
 NEEDED := Python 3.11, 3.12 or 3.13 is needed, since Taichi has no wheels for others
 REMEDY := install uv (https://docs.astral.sh/uv), which gets one, or name one: make demo PYTHON=/path/to/python3.12
+
+# Run the notebooks of the manual and keep their outputs: some ten minutes. make notebooks NAMES="hopper own_law" runs these
+notebooks: $(VENV)/installed-notebooks
+	$(BIN)/python docs/notebooks/execute.py $(NAMES)
+
 $(VENV)/bin/pip:
 	@if test -n "$(PYTHON)"; then \
 		$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "Python cannot make a virtual environment: sudo apt install python3-venv"; exit 1; }; \
@@ -74,6 +79,10 @@ $(VENV)/installed-docs: pyproject.toml | $(VENV)/bin/pip
 $(VENV)/installed-release: | $(VENV)/bin/pip
 	$(BIN)/pip install --quiet --disable-pip-version-check 'build>=1.2' 'twine>=6' 'check-wheel-contents>=0.6'
 	@touch $@
+
+$(VENV)/installed-notebooks: pyproject.toml | $(VENV)/bin/pip
+	$(INSTALL) '.[notebooks]'
+	@touch $@ $(VENV)/installed
 
 clean:
 	rm -rf $(VENV) docs/_build dist

@@ -12,14 +12,17 @@ project = "Cargo Shift Lab"
 copyright = "the Cargo Shift Lab authors, MIT"
 version = release = __version__
 
-extensions = ["myst_parser", "insert"]
+extensions = ["myst_nb", "insert", "mathml"]
 exclude_patterns = ["_build", "_ext"]
-source_suffix = {".md": "markdown"}
+source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb"}
 nitpicky = True
 myst_heading_anchors = 3
-myst_enable_extensions = ["colon_fence", "deflist"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_links_external_new_tab = False
 suppress_warnings = ["myst.header"]  # pages of results begin some parts two levels down
+
+nb_execution_mode = "off"  # pages show the outputs that are kept: `make notebooks`
+html_math_renderer = "mathml"
 
 html_theme = "furo"
 html_title = f"Cargo Shift Lab {version}"

@@ -14,7 +14,7 @@ from lab.cli import main
 from lab.preset.find import load
 
 ROOT = Path(__file__).parents[2]
-TOOLS = "sphinx", "furo", "myst_parser"
+TOOLS = "sphinx", "furo", "myst_nb", "latex2mathml"
 MISSING = [name for name in TOOLS if importlib.util.find_spec(name) is None]
 ELSEWHERE = re.compile(r"""<(?:script|link|img)[^>]*(?:src|href)="((?:https?:)?//[^"]+)""")
 MOST_LINES, MOST_WORDS = 60, 700
