@@ -74,6 +74,13 @@ def test_a_kept_page_is_what_its_command_writes_from_the_kept_results(name, tmp_
     assert (tmp_path / f"{name}.md").read_bytes() == (kept / f"{name}.md").read_bytes()
 
 
+def test_every_picture_of_a_page_has_its_command_beside_it():
+    for path in sorted((ROOT / "docs").rglob("*.md")):
+        text = path.read_text(encoding="utf-8")
+        for found in re.finditer(r"^!\[[^\]]*\]\([^)]+\)\n", text, re.MULTILINE):
+            assert "`cargolab " in text[found.end() :].lstrip("\n").partition("\n\n")[0], path
+
+
 def test_readme_is_short():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert len(text.splitlines()) <= MOST_LINES and len(text.split()) <= MOST_WORDS
