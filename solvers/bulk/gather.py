@@ -32,8 +32,12 @@ class Gather:
     rate EVENED, and where it knows less, too, if the point is DEEP: the grid is half empty at the surface. The sum of
     many small errors of the velocity gradient would else be room that is lost, or won.
 
-    A bed that `softens` holds μ_s + (μ_start − μ_s) exp(−γ/γ_s) after the plastic shear strain γ: grains must first
-    ride up on each other. It does not heal at rest. (Source: ours, softening that is exponential in the strain.)
+    A bed that `softens` holds, after the plastic shear strain γ,
+
+        μ = μ_s + (μ_start − μ_s) exp(−γ/γ_s)
+
+    since grains must first ride up on each other. It does not heal at rest. (Source: ours, softening that is
+    exponential in the strain.)
     """
 
     def __init__(

@@ -20,7 +20,9 @@ class Spread:
     """Each column of points spreads to a strip of its own, three columns of nodes wide, so that no two threads meet.
 
     The momentum of a point is affine about it (Jiang et al. 2015, APIC), and its stress acts through the same weights
-    (Hu et al. 2018, MLS-MPM): node i receives w_i (m v + (m C − kick V σ 4/h²) (x_i − x)).
+    (Hu et al. 2018, MLS-MPM). With the length Δt of the kick, and nodes h apart, node i receives the momentum
+
+        p_i = Σ w_i (m v + (m C − Δt V σ 4/h²) (x_i − x))
     """
 
     def __init__(self, arrays: State, units: Units, points: Points, order: Order, bulk: Bulk):

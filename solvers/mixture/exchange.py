@@ -27,7 +27,7 @@ THIN = 1.0e-6  # m²/s, kinematic viscosity at most of the liquid out of which a
 
 @ti.data_oriented
 class Exchange(Pull):
-    """A grain feels −V_g ∇p + V_g ∇·τ + F_d, and the water the opposite (Anderson & Jackson 1967).
+    """F_g = −V_g ∇p + V_g ∇·τ + F_d (Anderson & Jackson 1967): what a grain feels, and the water the opposite.
 
     The water's own pairs and walls make the force F_i on a particle as if it filled its volume alone. It keeps ε_i F_i,
     and the grains about it get the rest, V_g W(r_ig)/Γ_i F_i each: what is taken is what is given, and water at rest
@@ -37,10 +37,13 @@ class Exchange(Pull):
 
     Drag is between the grain and the velocity u_f at its place, interpolated with the weights V_i W/Σ V W, by which its
     reaction is spread, too. The water acts in steps of its own, T, the grains in many shorter ones. Through these the
-    drag is the mean over the step of the exact solution of du_g/dt = a_g + κ (u_f − u_g)/m_g, du_f/dt = a_f − κ (u_f −
-    u_g)/m_s with the water's share m_s = ρ V_g ε/(1 − ε) (own derivation): neither step is limited by drag, however
-    fine the grains. The coefficient κ stands through a step of the water. Impulses of drag are summed for each grain
-    and go to the water at the step's end.
+    drag is the mean over the step of the exact solution of
+
+        du_g/dt = a_g + κ (u_f − u_g)/m_g,   du_f/dt = a_f − κ (u_f − u_g)/m_s
+
+    with the water's share m_s = ρ V_g ε/(1 − ε) (own derivation): neither step is limited by drag, however fine the
+    grains. The coefficient κ stands through a step of the water. Impulses of drag are summed for each grain and go to
+    the water at the step's end.
 
     The lift stands through T, too. Grains would then follow it as by Euler's method, x'' = −ω² x growing at the rate
     ω² T/4. So as a step begins, each gets half a step of the change of its lift besides: its mean velocities over the

@@ -1,7 +1,9 @@
 """Openings between rooms, and to the sea: what flows through them, exactly, at any heel and trim.
 
-Q = C_d ∫ √(2 g Δh(z)) dA, Δh(z) = a_1 + max(h_1, z) − a_2 − max(h_2, z) (Torricelli 1643; Dillingham 1981): at each
-height of the opening the water goes where the head is lower, both ways at once where levels and air pressures cross.
+    Q = C_d ∫ √(2 g Δh(z)) dA,   Δh(z) = a_1 + max(h_1, z) − a_2 − max(h_2, z)
+
+Source: Torricelli (1643), Dillingham (1981). At each height of the opening the water goes where the head is lower, both
+ways at once where levels and air pressures cross.
 h_i are the levels on the two sides and a_i = (p_i − p_0) / ρ g the heads of their air's overpressure, z heights above
 the sea. Of an upright rectangle of width b and height D with its sill at z = 0, between an outer level H > D and an
 empty room, that is (2/3) C_d b √(2 g) [H^(3/2) − (H − D)^(3/2)]; of a drowned one C_d b D √(2 g Δh).
