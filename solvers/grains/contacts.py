@@ -119,7 +119,7 @@ class Contacts:
         start = self.units.world(u) * pairs.stride
         lanes = ti.static(range(pairs.lanes))
         off, on = ti.cast(0.0, g.real), ti.cast(-1.0, g.real)
-        fixed = ti.Vector([ti.select(j[k] - start >= g.mobile, on, off) for k in lanes])
+        fixed = ti.Vector([ti.select(j[k] - start >= self.units.moving(), on, off) for k in lanes])
         place = [ti.Vector([ti.cast(g.place[a][0, i[k]], g.real) for k in lanes]) for a in ti.static(range(g.axes))]
         about = tangent.moment(place, force)
         moment = [fixed * (about[k] + turn[k]) for k in ti.static(range(g.turns))]
@@ -251,12 +251,12 @@ class Contacts:
             apart = g.between(w, i, j)
             overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - ti.sqrt(dot(apart, apart)), g.real)
             if overlap > 0.0:
-                part = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                part = ti.select(start <= j < end or j >= self.units.moving(), 1.0, 0.5)
                 touching += part
                 deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
                 energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
             if ti.static(self.laws.cohesive):
-                share = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                share = ti.select(start <= j < end or j >= self.units.moving(), 1.0, 0.5)
                 if ti.static(g.soaks):
                     share *= g.dry[w, i] * g.dry[w, j]
                 energy += share * self.laws.bridge_energy(pairs, u, p, overlap)

@@ -42,7 +42,7 @@ class Diagnostics:
         self.units, self.grains, self.walls, self.lists = units, grains, walls, lists
         self.contacts, self.carrier = contacts, carrier
         self.exact, self.may_leave = arrays.exact, grains.may_leave
-        self.chunks = -(-grains.mobile // CHUNK)
+        self.chunks = -(-grains.room // CHUNK)
         self.quantities = tuple(one.within(grains.axes) for one in (*quantities.SERIES, quantities.ESCAPED))
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
@@ -76,7 +76,7 @@ class Diagnostics:
         """Sums over one chunk of grains; an open tank's that are out of it are spilled, and let go of far away."""
         sums = [ti.cast(0.0, self.exact) for _ in range(self.numbers)]
         sums[ESCAPED] = NEVER
-        for i in range(chunk * CHUNK, ti.min(g.mobile, (chunk + 1) * CHUNK)):
+        for i in range(chunk * CHUNK, ti.min(self.units.moving(), (chunk + 1) * CHUNK)):
             inside = self.walls.holds(*g.at(w, i))
             if ti.static(self.may_leave):
                 if not inside:

@@ -27,10 +27,10 @@ def make_grains(scene, context: Context) -> GrainMatter:
     """The grains of a scene (`solvers.scene.Scene`); in tanks aboard a body, their carrier is that body."""
     given, hold = scene.grains, context.parts.bodies.hold
     arrays, walls, count = context.arrays, context.walls, given.count
-    units = context.units(count, len(given.fixed))
+    units = context.units(count, len(given.fixed), arrays.under("grains"))
     load = context.load(arrays.under("grains"), units)
     may_leave = any(tank.open_edges for tank in scene.tanks)
-    state = given.radius, given.density, given.fixed, units.ghosts, may_leave, given.kind
+    state = given.radius, given.density, given.fixed, units, may_leave, given.kind
     integrator = INTEGRATORS[given.integrator]()
     between = given.interfaces_of, given.kinds
     laws = ChosenLaws(arrays, units, *given.laws, *between, integrator, context.axes, given.twist_law)

@@ -92,7 +92,7 @@ class Presser:
         for p in range(contacts.length[u]):
             i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
             press = self.contacts.wall_press(g, contacts, w, i, feature, shift, u, p)
-            self.write(first + p, i, self.grains.mobile, self.walls.piece(feature), press, names, rows)
+            self.write(first + p, i, self.units.moving(), self.walls.piece(feature), press, names, rows)
 
     @ti.func
     def write(self, row, i, j, piece, press, names: ti.template(), rows: ti.template()):
@@ -100,7 +100,7 @@ class Presser:
         force = [press[self.grains.axes + a] for a in ti.static(range(self.grains.axes))]
         if is_some(force):
             names[row, 0], names[row, 2] = i, piece
-            if j < self.grains.mobile:
+            if j < self.units.moving():
                 names[row, 1] = j
             for k in ti.static(range(2 * self.grains.axes + 1)):
                 rows[row, k] = ti.cast(press[k], ti.f32)

@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine.state import Axis, Scope, State
+from solvers.machine.units import Units
 from solvers.space.axes import dot, named, named_turns, turns
 
 FAR = 1e3  # m
@@ -11,7 +12,9 @@ FAR = 1e3  # m
 
 @ti.data_oriented
 class GrainState:
-    """Arrays (W, n + k + ghosts), SI, in the tank's frame: n that move, k fixed ones of rough walls, far-off points.
+    """Arrays (W, room + ghosts), SI, in the tank's frame: n that move, k fixed ones of rough walls, far-off points.
+
+    `units` cut them; `room` is for n + k of them at least.
 
     `place` (m), `velocity` and `now` (m/s) and `force` (N) are lists with an array for each of the `axes`, `angle`,
     `spin` and `spin_now` (rad, rad/s) and `torque` (N m) for each of the `turns`, the axes about which grains turn.
@@ -35,7 +38,7 @@ class GrainState:
         radius: np.ndarray,
         density: np.ndarray,
         fixed: np.ndarray,
-        ghosts: int,
+        units: Units,
         may_leave: bool,
         kind: np.ndarray | None = None,
         spread: np.ndarray | float = 1.0,
@@ -45,10 +48,10 @@ class GrainState:
         self.axes, self.turns, self.fixed = axes, turns(axes), fixed
         self.worlds, self.mobile = radius.shape
         self.count = self.mobile + len(fixed)
-        self.ghosts, self.may_leave = ghosts, may_leave
+        self.units, self.room, self.may_leave = units, units.room, may_leave
         self.real, self.exact = arrays.real, arrays.exact
         self.mixed = arrays.real is not arrays.place
-        self.stride = self.count + ghosts  # numbers from a grain of one world to its like of the next
+        self.stride = self.room + units.ghosts  # numbers from a grain of one world to its like of the next
         own, each = arrays.under("grains"), "world grain"
         self.each = Axis("world", self.worlds), Axis("grain", self.stride)
         self.place = own.reals(self.each, *named("place", axes), kind=own.place)
@@ -82,7 +85,7 @@ class GrainState:
 
     def _filled(self, values: np.ndarray, fixed: np.ndarray | float, ghost: float) -> np.ndarray:
         """Values (W, n) of the grains that move, with those of the fixed ones and the ghosts after them."""
-        whole = np.full((self.worlds, self.count + self.ghosts), ghost)
+        whole = np.full((self.worlds, self.stride), ghost)
         whole[:, : self.mobile] = values
         whole[:, self.mobile : self.count] = fixed
         return whole
@@ -154,7 +157,7 @@ class GrainState:
     def fastest(self, w):
         """The highest speed (m/s) of a world's grains."""
         highest = ti.cast(0.0, self.real)
-        for i in range(self.mobile):
+        for i in range(self.units.moving()):
             v = [field[w, i] for field in ti.static(self.velocity)]
             highest = ti.max(highest, dot(v, v))
         return ti.sqrt(highest)

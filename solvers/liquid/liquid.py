@@ -26,7 +26,7 @@ class Liquid(Matter):
         arrays, world = context.arrays, Axis("world", context.worlds)
         self.carrier, self.exact = context.carrier, arrays.exact
         # Of whole worlds: a band of one, cut for the grains beside it, has no liquid of its own.
-        self.units = Units(context.worlds, 1, 1, 1)
+        self.units = Units(context.worlds, 1, 1)
         self.load = context.load(arrays.under("water"), self.units)
         self.load.add_mass(arrays.under("water"))
         self.thickness = scene.tanks[0].thickness

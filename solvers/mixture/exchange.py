@@ -67,7 +67,7 @@ class Exchange(Pull):
         self.grains, self.water, self.carrier = grains.grains, water, context.carrier
         self.particles, self.constants, self.order = water.particles, water.constants, water.order
         self.lists, self.ranges, self.poses, self.substeps = water.lists, water.ranges, water.poses, water.substeps
-        self.water_units, self.units = water.units, context.units(self.grains.count)
+        self.water_units, self.units = water.units, context.units(self.grains.count, 0, arrays.under("mixture.units"))
         mixture: Mixture = scene.mixture
         self.law, thickness = DRAG[mixture.drag](), scene.tanks[scene.hold].thickness
         hulled = arrays, scene, self.grains, hold, water.bodies.hulls, context.parts
@@ -75,7 +75,7 @@ class Exchange(Pull):
         self.porosity = Porosity(arrays, water.context, frame, context.walls.bounds, thickness)
         self.laying = Laying(scene)
         g, own = self.grains, arrays.under("mixture")
-        each = Axis("world", g.worlds), Axis("place", g.count)
+        each = Axis("world", g.worlds), Axis("place", g.room)
         self.flow, self.lift, self.rise, self.impulse, self.push = (
             own.reals(each, *named(name, g.axes), kept=False) for name in ("flow", "lift", "rise", "impulse", "push")
         )
@@ -113,7 +113,7 @@ class Exchange(Pull):
         """What the water does to each grain of a unit through the coming step of the water."""
         w = self.units.world(u)
         for i in range(self.units.first(u), self.units.end(u)):
-            self.gather_at(w, i, ti.select(i < self.grains.mobile, dt / self.substeps.every, kick))
+            self.gather_at(w, i, ti.select(i < self.grains.units.moving(), dt / self.substeps.every, kick))
             self.lead(w, i, kick, dt)
 
     @ti.func
@@ -216,11 +216,11 @@ class Exchange(Pull):
     def close(self, w, frame, kick, dt):
         """Have all grains of a world give back what the water gave them; returns that all is well."""
         g = self.grains
-        for i in range(g.mobile, g.count):
+        for i in range(g.units.moving(), g.units.all()):
             still = [ti.cast(0.0, g.real) for _ in ti.static(range(g.axes))]
             felt = [ti.cast(self.poses.felt[2 + a][w], g.real) for a in ti.static(range(g.axes))]
             self.act(w, i, still, felt, self.substeps.kick(w, kick))
-        for k in range(g.count):
+        for k in range(g.units.all()):
             i = self.porosity.cells.sorted[w, k]
             for a in ti.static(range(g.axes)):
                 self.push[a][w, k] = -self.share[w, i] * self.impulse[a][w, i]

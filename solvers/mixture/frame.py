@@ -20,7 +20,8 @@ class InTank:
 
     def __init__(self, grains: GrainState):
         self.grains, self.place = grains, grains.place
-        self.axes, self.worlds, self.count = grains.axes, grains.worlds, grains.count
+        self.axes, self.worlds, self.units = grains.axes, grains.worlds, grains.units
+        self.count, self.room = grains.count, grains.room
         self.may_leave, self.present = grains.may_leave, grains.present if grains.may_leave else None
 
 
@@ -46,9 +47,10 @@ class OnHull:
     def __init__(self, arrays: State, scene, grains: GrainState, hold: OnBody, hulls: Hulls, pieces: Pieces):
         self.grains, self.hold, self.hulls, self.pieces = grains, hold, hulls, pieces
         self.part, self.room = hold.bodies.parts[hold.body], room_of(scene)
-        self.axes, self.worlds, self.count = grains.axes, grains.worlds, grains.count
+        self.axes, self.worlds, self.units = grains.axes, grains.worlds, grains.units
+        self.count, self.room = grains.count, grains.room
         self.may_leave, self.where = False, arrays.place  # the tank aboard is closed
-        own, each = arrays.under("mixture"), (Axis("world", grains.worlds), Axis("place", grains.count))
+        own, each = arrays.under("mixture"), (Axis("world", grains.worlds), Axis("place", grains.room))
         self.place = own.reals(each, *named("carried", grains.axes), kind=own.place, kept=False)
 
     @ti.func
@@ -59,7 +61,7 @@ class OnHull:
         self.hold.note_held(w)
         pose, k = ti.static(self.pieces.poses, self.part)
         cos, sin, o_y, o_z = pose[w, k, COSINE], pose[w, k, SINE], pose[w, k, Y], pose[w, k, Z]
-        for i in range(self.count):
+        for i in range(self.units.all()):
             y = ti.cast(self.grains.place[0][w, i], self.hold.exact)
             z = ti.cast(self.grains.place[1][w, i], self.hold.exact)
             self.place[0][w, i] = ti.cast(o_y + cos * y - sin * z, self.where)

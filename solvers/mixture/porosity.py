@@ -38,7 +38,7 @@ class Porosity:
         images = self.lists.images
         self.images, self.stride = len(images), images[1] - images[0] if len(images) > 1 else 0
         self.cells = Cells(arrays.under("mixture"), frame, lower, upper, 0.5 * self.lists.order.grid.spacing)
-        own, each = arrays.under("mixture"), (Axis("world", grains.worlds), Axis("place", grains.count))
+        own, each = arrays.under("mixture"), (Axis("world", grains.worlds), Axis("place", grains.room))
         self.place = own.reals(each, *named("place", grains.axes), kind=own.place, kept=False)
         (self.area,) = own.reals(each, "area", kept=False)
         p = context.particles
@@ -50,7 +50,7 @@ class Porosity:
     def sort(self, w, t, kick, dt):
         """Sort the grains of a world into cells, and copy their places and areas into this order."""
         self.cells.sort_world(w)
-        for k in range(self.grains.count):
+        for k in range(self.grains.units.all()):
             i = self.cells.sorted[w, k]
             for a in ti.static(range(self.grains.axes)):
                 self.place[a][w, k] = self.frame.place[a][w, i]
@@ -124,7 +124,7 @@ class Porosity:
         cells = self.cells
         away = ti.cast(side * self.constants.get("reach"), self.particles.where)
         row = ti.cast((z + away - cells.lengths[1]) / cells.lengths[2], ti.i32)
-        return ti.max(0, ti.min(cells.shape[1] - 1, row))
+        return ti.max(0, ti.min(cells.shape_along(1) - 1, row))
 
     @ti.func
     def column_of(self, y, side: ti.template()):
@@ -132,17 +132,17 @@ class Porosity:
         cells = self.cells
         away = ti.cast(side * self.constants.get("reach"), self.particles.where)
         column = ti.cast((y + away - cells.lengths[0]) / cells.lengths[2], ti.i32)
-        return ti.max(0, ti.min(cells.shape[0] - 1, column))
+        return ti.max(0, ti.min(cells.shape_along(0) - 1, column))
 
     @ti.func
     def begin(self, w, row, y):
         """The first of the sorted grains in a row that a place at y (m) may see."""
-        return self.cells.first[w, row * self.cells.strides[1] + self.column_of(y, -1)]
+        return self.cells.first[w, row * self.cells.stride(1) + self.column_of(y, -1)]
 
     @ti.func
     def end(self, w, row, y):
         """One past the last of the sorted grains in a row that a place at y (m) may see."""
-        return self.cells.first[w, row * self.cells.strides[1] + self.column_of(y, 1) + 1]
+        return self.cells.first[w, row * self.cells.stride(1) + self.column_of(y, 1) + 1]
 
     @ti.func
     def shift(self, image, axis: ti.template()):

@@ -66,7 +66,7 @@ class Contacts:
         # J, the work of all parts on their contacts up to the last kick; W, in it
         self.spent, self.power = own.reals((world,), "spent", "power", kind=own.exact)
         (self.elastic,) = own.reals((world,), "elastic", kind=own.exact, kept=False)  # J, when last asked for
-        self.load = Load(own, Units(self.worlds, 0, 1, 0), scene.pieces, scene.shares)
+        self.load = Load(own, Units(self.worlds, 0, 1), scene.pieces, scene.shares)
         self.phases = (Phase(self.act),)
 
     def forget(self) -> None:

@@ -52,7 +52,7 @@ class ContactsInSpace:
         (self.sums,) = own.reals((world, *sums), "sums", kind=own.exact, kept=False)
         self.spent, self.power = own.reals((world,), "spent", "power", kind=own.exact)
         (self.elastic,) = own.reals((world,), "elastic", kind=own.exact, kept=False)
-        self.load = Load(own, Units(self.worlds, 0, 1, 0), scene.pieces, scene.shares, axes=SPACE)
+        self.load = Load(own, Units(self.worlds, 0, 1), scene.pieces, scene.shares, axes=SPACE)
         self.phases = (Phase(self.act),)
 
     def forget(self) -> None:

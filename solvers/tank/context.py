@@ -40,9 +40,9 @@ class Context:
     among: int = 0
     wide: bool = True
 
-    def units(self, count: int, more: int = 0) -> Units:
-        """The units of a matter of `count` particles in each world, and `more` that do not move."""
-        return Units(self.worlds, count, max(1, count) if self.per_particle else self.bands, count + more)
+    def units(self, count: int, more: int = 0, own: Scope | None = None) -> Units:
+        """The units of a matter of `count` particles in each world, and `more` that do not move (`Units`)."""
+        return Units(self.worlds, count, max(1, count) if self.per_particle else self.bands, more, own)
 
     def load(self, own: Scope, units: Units, every: int = 1) -> Load:
         """The load of a matter that acts `every` few steps; its arrays are declared in the matter's `own` scope."""

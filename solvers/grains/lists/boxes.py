@@ -22,7 +22,7 @@ class Boxes:
 
     def __init__(self, arrays: State, grains: GrainState, cells: Cells):
         self.grains, self.cells = grains, cells
-        own, axes = arrays.under("lists"), (Axis("world", grains.worlds), Axis("cell", cells.cells))
+        own, axes = arrays.under("lists"), (Axis("world", grains.worlds), Axis("cell", cells.room))
         self.low = own.reals(axes, *named("low", grains.axes), kept=False)
         self.high = own.reals(axes, *named("high", grains.axes), kept=False)
 
@@ -37,13 +37,13 @@ class Boxes:
     def take(self, w, since: ti.template()):
         """Box the displacements of a world's grains; returns the largest one (m)."""
         g, c, farthest = self.grains, self.cells, ti.cast(0.0, self.grains.real)
-        for cell in range(c.cells):
+        for cell in range(c.number()):
             low = [ti.cast(EMPTY, g.real) for _ in ti.static(range(g.axes))]
             high = [-low[a] for a in ti.static(range(g.axes))]
             for k in range(c.first[w, cell], c.first[w, cell + 1]):
                 i = c.sorted[w, k]
                 gone = [ti.cast(0.0, g.real) for _ in ti.static(range(g.axes))]
-                if i < g.mobile:
+                if i < g.units.moving():
                     for a in ti.static(range(g.axes)):
                         gone[a] = ti.cast(g.place[a][w, i] - since[a][w, i], g.real)
                 farthest = ti.max(farthest, dot(gone, gone))
@@ -57,7 +57,7 @@ class Boxes:
     def nearing(self, w, rings: ti.template()):
         """By how much (m) two grains in one cell, or in two at most so many `rings` apart, have neared at most."""
         c, farthest = self.cells, ti.cast(0.0, self.grains.real)
-        for cell in range(c.cells):
+        for cell in range(c.number()):
             if self.low[0][w, cell] < EMPTY:
                 lower, upper = c.around(cell, rings)
                 for n in range(c.rows(lower, upper)):

@@ -56,7 +56,7 @@ class Candidates:
         self.first, self.wall_first = own.integers(starts, "first", "wall_first")
         (self.mate,) = own.integers((units.axis, Axis("candidate", self.capacity)), "mate")
         (self.feature,) = own.integers((units.axis, Axis("beside", self.wall_capacity)), "feature")
-        self.seen = own.reals((world, Axis("grain", grains.count)), *named("seen", grains.axes), kind=own.place)
+        self.seen = own.reals((world, Axis("grain", grains.room)), *named("seen", grains.axes), kind=own.place)
         (self.known,) = own.integers((world,), "known")
         (self.renewed,) = own.integers((world,), "renewed", kept=False)
         # Gaps (m) up to which pairs and grains beside walls are among them, and of grains more than two cells apart
@@ -80,7 +80,7 @@ class Candidates:
             if ti.static(self.boxed):
                 moved, nearing = self.boxes.moves(w, self.seen, 2)
             else:
-                for i in range(self.grains.mobile):
+                for i in range(self.units.moving()):
                     gone = [
                         ti.cast(self.grains.place[a][w, i] - self.seen[a][w, i], self.grains.real)
                         for a in ti.static(range(self.grains.axes))
@@ -99,7 +99,7 @@ class Candidates:
         self.renewed[w] = ti.cast(self.outdated(w, margin), ti.i32)
         if self.renewed[w] == 1:
             self.known[w] = 1
-            for i in range(self.grains.mobile):
+            for i in range(self.units.moving()):
                 self.grains.fold(w, i)
                 for a in ti.static(range(self.grains.axes)):
                     self.seen[a][w, i] = self.grains.place[a][w, i]

@@ -61,7 +61,7 @@ class Neighbours:
         self.units, self.grains, self.walls, self.skin, self.laws = units, grains, walls, skin, laws
         (pairs, more_pairs), (contacts, more_contacts) = ROOM[grains.axes][units.single]
         times, power = ACROSS[grains.axes]
-        across = 0 if units.whole or units.single else times * int(units.mobile**power)  # pairs with other units
+        across = 0 if units.whole or units.single else times * int(units.room**power)  # pairs with other units
         lanes = 1 if units.single else laws.wide or self.lanes
         pairs, contacts = pairs * units.size + across + more_pairs, contacts * units.size + more_contacts
         more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())
@@ -111,7 +111,7 @@ class Neighbours:
         if ti.static(not self.units.single):
             anew = self.candidates.renew(w, self.skin.apart(w))
         elif ti.static(self.grains.periodic):
-            for i in range(self.grains.mobile):
+            for i in range(self.units.moving()):
                 self.grains.fold(w, i)
         if anew:
             self.cells.sort_world(w)

@@ -115,8 +115,8 @@ def _both_ways(i, j, kept, sign, mobile) -> tuple[np.ndarray, np.ndarray, np.nda
 
 def _fill(u, units, before, i, j, kept, mates, length, first, grain, mate, memory) -> None:
     """The list of unit u: the contacts whose first grain is its own, a pair within it once; i and j in their world."""
-    start = (u % units.a_world) * units.size
-    end = min(units.mobile, start + units.size)
+    start = (u % units.a_world) * units.share
+    end = min(units.mobile, start + units.share)
     own = (i >= start) & (i < end)
     if mates:
         own &= ~((j < i) & (j >= start))

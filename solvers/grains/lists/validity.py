@@ -37,7 +37,7 @@ class ListValidity:
         self.units, self.grains, self.walls, self.skin = units, grains, walls, skin
         self.boxes, self.boxed = boxes, boxes is not None
         self.little = LITTLE[self.boxed]
-        own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
+        own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.room))
         self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
         if grains.shaped:
             (self.built_angle,) = own.reals(place, "built_angle")

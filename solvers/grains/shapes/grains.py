@@ -9,13 +9,14 @@ from solvers.grains.shapes.pose import posed
 from solvers.grains.state import GrainState
 from solvers.machine.quantity import PLANE
 from solvers.machine.state import State
+from solvers.machine.units import Units
 
 DISC = Contour(1.0)
 
 
 @ti.data_oriented
 class ShapedState(GrainState):
-    """Grains whose outlines have the numbers `shape` (W, n + k + ghosts); fixed grains are discs, the last outline.
+    """Grains whose outlines have the numbers `shape` (W, room + ghosts); fixed grains are discs, the last outline.
 
     Mass is that of the sphere of equal area, inertia that of `Contour.inertia`. `turn_y` and `turn_z` are cos and sin
     of the angle, computed once per step for all contacts. Outlines are plane: `y` and `z` are all of `place`,
@@ -31,13 +32,13 @@ class ShapedState(GrainState):
         radius: np.ndarray,
         density: np.ndarray,
         fixed: np.ndarray,
-        ghosts: int,
+        units: Units,
         may_leave: bool,
         kind: np.ndarray | None = None,
     ):
         outlines = with_disc(shapes)
         spread = np.array([outline.spread for outline in outlines])[shapes.which]
-        super().__init__(arrays, PLANE, radius, density, fixed, ghosts, may_leave, kind, spread)
+        super().__init__(arrays, PLANE, radius, density, fixed, units, may_leave, kind, spread)
         self.y, self.z = self.place
         bounding = np.array([outline.bounding_radius for outline in outlines])[shapes.which]
         self.start_angle = shapes.angle

@@ -267,7 +267,7 @@ class ShapedContacts(Contacts):
             i, j = pairs.first_of(u, p), pairs.second_of(u, p)
             overlap = self.rule.pair(g, pairs, w, ti.min(i, j), ti.max(i, j), u, p, False)[OVERLAP]
             if overlap > 0.0:
-                part = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                part = ti.select(start <= j < end or j >= self.units.moving(), 1.0, 0.5)
                 touching += part
                 deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
                 energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
