@@ -66,35 +66,32 @@ class Units:
     def first(self, u):
         """The first grain of unit u."""
         i = 0
-        if ti.static(self.told and not self.whole):
-            i = (u % self.a_world) * self.numbers[SHARE]
-        elif ti.static(not self.whole):
-            i = (u % self.a_world) * self.share
+        if ti.static(not self.whole):
+            i = (u % self.a_world) * self.told_of(SHARE, self.share)
         return i
 
     @ti.func
     def end(self, u):
         """One past the last grain of unit u; a unit may be empty."""
-        after = self.first(u) + self.share
-        if ti.static(self.told):
-            after = self.first(u) + self.numbers[SHARE]
-        return ti.max(self.first(u), ti.min(self.moving(), after))
+        return ti.max(self.first(u), ti.min(self.moving(), self.first(u) + self.told_of(SHARE, self.share)))
 
     @ti.func
     def moving(self):
         """How many grains of a world move."""
-        mobile = self.mobile
-        if ti.static(self.told):
-            mobile = self.numbers[MOBILE]
-        return mobile
+        return self.told_of(MOBILE, self.mobile)
 
     @ti.func
     def all(self):
         """How many grains a world has, fixed ones included."""
-        count = self.mobile + self.more
+        return self.told_of(COUNT, self.mobile + self.more)
+
+    @ti.func
+    def told_of(self, which: ti.template(), number: ti.template()):
+        """One of the `numbers`; where there are none, the `number` itself, as a constant."""
         if ti.static(self.told):
-            count = self.numbers[COUNT]
-        return count
+            return self.numbers[which]
+        else:
+            return number
 
     @ti.func
     def ghost(self, u):
