@@ -36,7 +36,7 @@ FLOORS = {  # from the ground up: a room imports those before it
     "lab": (
         *("base", "plugins", "preset", "assembly", "naval", "recording", "measures", "paint", "report"),
         "export",
-        *("runs", "sweeps", "view", "studies", "doctor", "cli"),
+        *("runs", "sweeps", "view", "studies", "voyage", "doctor", "cli"),
     ),
     "cargolab": ("_hidden", "_xarray", "_preset", "_simulation", "_plugins", "_calls"),
     "benchmarks": (

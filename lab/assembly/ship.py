@@ -33,9 +33,11 @@ QUARTER = 0.5 * pi  # rad: the largest angle of loll
 
 
 def make_waves(given: seas.Waves | None, water: Water) -> Waves | None:
-    """The waves' components."""
-    if given is None:
-        return None
+    """The waves' components, as the run meets them."""
+    return None if given is None else _from_their_start(given, water).later(given.begin)
+
+
+def _from_their_start(given: seas.Waves, water: Water) -> Waves:
     frequency, start = given.frequency, given.soft_start
     if given.kind == "regular":
         return regular(given.amplitude, frequency, water, start)

@@ -15,6 +15,7 @@ from lab.cli.presets import outline, schema
 from lab.cli.runs import bed, explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
 from lab.cli.sweeps import calibrate, sweep
+from lab.cli.voyage import voyage
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -30,6 +31,7 @@ def main() -> None:
     cargolab stability SHIP          judge her by the codes, without a run
     cargolab flood CASE              let water into her rooms, by formula
     cargolab sweep shaking/sway ...  run one for many values of its keys
+    cargolab voyage SHIP ...         whether her cargo shifts in a sea, over many seeds
     cargolab export DIR --to html    give it to others: a player, or ParaView, OVITO, tables
     cargolab resume DIR              continue an interrupted run or sweep
     """
@@ -64,6 +66,7 @@ for command in (
     sweep,
     verify,
     view,
+    voyage,
 ):
     main.add_command(command)
 

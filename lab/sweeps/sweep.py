@@ -50,7 +50,7 @@ def run_sweep(
     """
     sweep = define_sweep(name, axes, overrides)
     folder = named(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
-    return _complete(sweep, folder, video, plots, quiet, cluster)
+    return complete(sweep, folder, video, plots, quiet, cluster)
 
 
 def errands(
@@ -68,7 +68,7 @@ def errands(
 
 def resume_sweep(folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False) -> SweepResult:
     """Continue the sweep in a folder as it was requested. Raises as `run_sweep`."""
-    return _complete(read_sweep(Path(folder)), Path(folder), video, plots, quiet)
+    return complete(read_sweep(Path(folder)), Path(folder), video, plots, quiet)
 
 
 def open_sweep(folder: Path | str) -> SweepResult:
@@ -110,10 +110,13 @@ def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[
 
 
 @in_turn
-def _complete(
+def complete(
     sweep: Sweep, folder: Path, video: bool, plots: bool, quiet: bool, cluster: str | None = None
 ) -> SweepResult:
-    """Run the points that are not done, on the cluster as far as possible, and summarise all points."""
+    """Run the points that are not done, on the cluster as far as possible, and summarise all points.
+
+    Raises as `run_sweep`.
+    """
     plan = list(_plan(sweep))  # reports an impossible point early
     folders = [point_folder(folder, number) for number in range(len(sweep.points))]
     with Progress(quiet) as progress, hint(folder, FILE_NAME), only_one(folder):

@@ -1,7 +1,7 @@
 """Waves at the ship: regular waves, wave packets or a random sea, as sums of linear waves travelling to starboard."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,10 @@ class Waves:
     frequency: np.ndarray
     wave_number: np.ndarray
     soft_start: float = 0.0
+
+    def later(self, time: float) -> "Waves":
+        """The same waves with the clock set to zero at a time (s): a' = a e^(−iω time)."""
+        return replace(self, amplitude=self.amplitude * np.exp(-1j * self.frequency * time))
 
     def elevation(self, y, time) -> np.ndarray:
         """Height (m) of the surface at y (m) and times (s) that broadcast together."""

@@ -43,3 +43,6 @@ class Waves:
     peakedness: Annotated[float, Interval(ge=1, le=10), Doc("Peakedness of the JONSWAP spectrum.")] = 3.3
     seed: Annotated[int, Interval(ge=0, le=2**31 - 1), Doc("Seed of a random sea's phases.")] = 1
     soft_start: Annotated[float, Unit("s"), Interval(ge=0), Doc("Time in which the waves come up.")] = 0.0
+    begin: Annotated[float, Unit("s"), Interval(ge=0), Doc("Time in the life of the waves at which a run begins.")] = (
+        0.0
+    )
