@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from lab.naval.flooding.results import Results
     from lab.naval.hull import Hull
+    from lab.preset.cargo.numbers import Cargo
     from lab.recording import Recording
     from lab.sweeps.calibration_report import Calibration
     from lab.sweeps.result import SweepResult
@@ -26,6 +27,7 @@ __all__ = [
     "Simulation",
     "__version__",
     "calibrate",
+    "cargoes",
     "colour",
     "explain",
     "export",
@@ -169,6 +171,16 @@ def presets(word: str = "") -> dict[str, str]:
     from lab.preset.find import names
 
     return {name: title for name, title in names().items() if name.startswith(word)}
+
+
+def cargoes(name: str | Path = "") -> "dict[str, Cargo]":
+    """The cargoes of the library by name, with their numbers (SI) and sources; of a name or a cargo file, that alone.
+
+    `cargolab.cargoes("soybeans")["soybeans"].number("density").value` is in kg/m³. Raises cargolab.Error.
+    """
+    from lab.preset.cargo.library import asked as found
+
+    return found(name)
 
 
 def explain(preset: "str | Path | Mapping | Preset", **overrides: object) -> str:

@@ -11,7 +11,7 @@ from lab.cli.machine import cache, doctor
 from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.options import plugins_option
 from lab.cli.pictures import beside, poster, render, sheet, view
-from lab.cli.presets import outline, schema
+from lab.cli.presets import cargoes, outline, schema
 from lab.cli.runs import bed, explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
 from lab.cli.sweeps import calibrate, sweep
@@ -43,6 +43,7 @@ for command in (
     beside,
     cache,
     calibrate,
+    cargoes,
     cross_flooding,
     doctor,
     explain,

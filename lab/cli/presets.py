@@ -1,11 +1,11 @@
-"""Commands on what presets are made of: their keys, and outlines of grains."""
+"""Commands on what presets are made of: their keys, cargoes, and outlines of grains."""
 
 from pathlib import Path
 
 import click
 
 from lab.base.data import PRESETS
-from lab.cli.options import FilePath
+from lab.cli.options import FilePath, json_option, tell, tell_json
 
 
 @click.command()
@@ -37,6 +37,30 @@ def schema(page: bool, out: Path | None) -> None:
 
         write_keys()
     click.echo(out if page else f"{out}; a preset beside it names it in its first line: #:schema ./{out.name}")
+
+
+@click.command()
+@click.argument("name", required=False, default="")
+@json_option
+def cargoes(name: str, as_json: bool) -> None:
+    """List the cargoes of the library, or show one with its sources: NAME, or the path of a cargo file.
+
+    \b
+    cargolab cargoes
+    cargolab cargoes soybeans
+    cargolab cargoes mine.toml       checks a file of one's own
+    cargolab run imsbc/tilting-box-quick --set grains.cargo=soybeans
+    """
+    from lab.preset.cargo.library import asked
+    from lab.preset.cargo.told import as_objects, card, table
+
+    found = asked(name)
+    if as_json:
+        tell_json(as_objects(found))
+    elif name:
+        tell(card(next(iter(found.values()))))
+    else:
+        tell(table(found))
 
 
 @click.command()

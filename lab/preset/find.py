@@ -23,6 +23,7 @@ from lab.base.errors import LabError
 from lab.base.files import read_bytes
 from lab.plugins.loading import admit
 from lab.preset import formats
+from lab.preset.cargo.filling import filled, located
 from lab.preset.fields import NAME, marked
 from lab.preset.kept import read as kept
 from lab.preset.merge import Layer, merged, nested
@@ -145,7 +146,9 @@ def _merged(name_or_path: str | Path, overrides: Mapping | None) -> tuple[Source
         if quick and not variant:
             raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
         layers = [*layers, Layer(variant if quick else {}, Path()), Layer(changes, Path())]
+        layers = filled(layers)
         table = reduce(merged, (layer.located([PLUGINS, *marked(keys, "columns")]) for layer in layers))
+        table = located(table, layers)
         if keys is not kept.loaded():
             check_keys(keys, table)
             read(keys, table)

@@ -18,6 +18,7 @@ ALTERNATIVES = {
     "grains": ({"count"}, {"depth"}),
     "material": ({"restitution"}, {"dissipative_time"}),
     "wall": ({"restitution"}, {"dissipative_time"}),
+    "bulk": ({"friction"}, {"repose"}),
     "water": ({"depth"}, {"region"}, {"radius"}),
     "ship": ({"gyradius"}, {"roll_period"}),
 }

@@ -30,6 +30,7 @@ NAMES = {
     "Preset": ("of", "overrides"),
     "Simulation": ("preset", "out", "repeats", "quiet", "overrides"),
     "calibrate": ("preset", "target", "vary", "out", "repeats", "quiet", "cluster", "overrides"),
+    "cargoes": ("name",),
     "explain": ("preset", "overrides"),
     "export": ("path", "to", "out", "every", "world", "frame", "sound", "progress"),
     "fields": ("of", "frame", "world", "spacing", "width"),

@@ -40,6 +40,13 @@ class Grains:
         Usual(1e-3, 1e-2, "mm"),
         Doc("Mean diameter; of shapes, that of the disc of equal area."),
     ] = None
+    cargo: Annotated[
+        str | None,
+        Doc(
+            "Cargo of the library, or the path of a cargo file: it fills density, friction and size, which other keys "
+            "here replace; `cargolab cargoes` lists them."
+        ),
+    ] = None
     stands_for: Annotated[
         Length | None,
         Doc("Diameter of the real grains that each grain of a coarse model stands for; it changes only texts."),

@@ -36,6 +36,13 @@ class Bulk:
     spacing: Annotated[
         Length, Cheap(), Usual(0.1, 2.0, "m"), Doc("Width of a cell; a whole number of them spans the tank.")
     ]
+    cargo: Annotated[
+        str | None,
+        Doc(
+            "Cargo of the library, or the path of a cargo file: it fills density, repose and diameter, which other "
+            "keys here replace; `cargolab cargoes` lists them."
+        ),
+    ] = None
     depth: Annotated[
         Length | None,
         Usual(0.1, 15.0, "m"),
