@@ -6,7 +6,7 @@ from math import isclose
 from lab.base.errors import LabError
 from lab.preset.cargo.filling import SECTIONS, numbers_for
 from lab.preset.cargo.library import cargo_named
-from lab.preset.cargo.numbers import QUANTITIES, Cargo, Number
+from lab.preset.cargo.numbers import Cargo, Number
 from lab.preset.fields import taken_by
 from lab.preset.python.keys import value_of
 from lab.preset.schema import Preset
@@ -54,14 +54,13 @@ def _head(cargo: Cargo) -> str:
 
 def _from(preset: Preset, key: str, number: Number) -> str:
     """Whether a number is the cargo's or the preset's own, with the source of the cargo's."""
-    value = value_of(preset, key)
-    known = f"{number.text}{f', {number.note}' if number.note else ''}: {number.source}"
-    if value is not None and isclose(value, number.value, rel_tol=SAME):
-        return (
-            f"{_shown(preset, key)}, {'the middle of ' if number.middle and number.low < number.high else 'of '}{known}"
-        )
-    own = f"{_shown(preset, key)}, the preset's own" if value is not None else "replaced by the preset's own"
-    return f"{own}, not {show(number.value, QUANTITIES[number.name].symbol)} of {known}"
+    value, source = value_of(preset, key), f"{f', {number.note}' if number.note else ''}: {number.source}"
+    if value is None:
+        return f"replaced by the preset's own, not {number.text}{source}"
+    if not isclose(value, number.value, rel_tol=SAME):
+        return f"{_shown(preset, key)}, the preset's own, not {number.text}{source}"
+    span = f", {'the middle of' if number.middle else 'of'} {number.text}" if number.low < number.high else ""
+    return f"{_shown(preset, key)}{span}{source}"
 
 
 def _shown(preset: Preset, key: str) -> str:
