@@ -6,6 +6,7 @@
 {{ page FILE }}                   a page that lies elsewhere, with its pictures; FILE from the repository's root
 {{ ratios FOLDER }}               by processor how many times as fast as other codes the lab is, with a folder's records
 {{ presets }}                     the reference of all keys of a preset
+{{ cargoes }}                     the library of cargoes with its sources
 
 A fence ```formula holds one formula in the plain text of docstrings, which is set as theirs are.
 """
@@ -20,6 +21,7 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 from benchmarks.speed.processors import overview
+from lab.preset.cargo.told import markdown
 from lab.preset.reference import reference
 
 ROOT = Path(__file__).parents[2]
@@ -53,6 +55,7 @@ def filled_in(text: str, folder: Path) -> str:
         "page": lambda name: page(ROOT / name, folder),
         "ratios": lambda name: overview(ROOT / name),
         "presets": reference,
+        "cargoes": markdown,
     }
     text = FORMULA.sub(lambda found: mathml(found[1]), text)
     return ASKED.sub(lambda found: made[found[1]](*found[2].split()), text)

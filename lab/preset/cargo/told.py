@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 
+from lab.preset.cargo.library import library
 from lab.preset.cargo.numbers import QUANTITIES, Cargo, Number
 
 COLUMNS = {"density": "solids kg/m3", "bulk_density": "bed kg/m3", "stowage": "SF m3/t", "repose": "repose deg"}
 COLUMNS |= {"diameter": "grains mm", "rolling_friction": "friction in"}
-UNKNOWN = "-"
+UNKNOWN, NOT_KNOWN = "-", "not known"
 
 
 def table(cargoes: Mapping[str, Cargo]) -> str:
@@ -25,8 +26,20 @@ def card(cargo: Cargo) -> str:
         lines.append(f"  {cargo.code}{f': {cargo.code_source}' if cargo.code_source else ''}")
     for name, quantity in QUANTITIES.items():
         known = cargo.numbers.get(name, ())
-        lines += [f"  {quantity.doc}: {_words(one)}" for one in known] or [f"  {quantity.doc}: not known"]
+        lines += [f"  {quantity.doc}: {_words(one)}" for one in known] or [f"  {quantity.doc}: {NOT_KNOWN}"]
     lines += [f"  {text}: {source}" for text, source in cargo.notes]
+    return "\n".join(lines)
+
+
+def markdown() -> str:
+    """The library as a page has it: a table of the first numbers, and each cargo with all its numbers and sources."""
+    known = library()
+    head = ["cargo", "code", *COLUMNS.values()]
+    rows = [f"| {' | '.join(_row(cargo))} |" for cargo in known.values()]
+    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *rows]
+    for cargo in known.values():
+        title, *numbers = card(cargo).splitlines()
+        lines += ["", f"**{title}**", "", *(f"- {line.strip()}" for line in numbers if not line.endswith(NOT_KNOWN))]
     return "\n".join(lines)
 
 
