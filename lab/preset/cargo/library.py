@@ -88,8 +88,13 @@ def cargo_of(name: str, table: object, file: str, sources: Mapping[str, str] | N
         texts["code_source"] = _source(sources, texts.get("code_source", ""), where)
     numbers = {key: _numbers(key, table[key], where, sources) for key in QUANTITIES if key in table}
     _check_density(numbers, where)
-    notes = tuple((str(text), _source(sources, str(source), where)) for text, source in table.get("notes", ()))
-    return Cargo(name=name, **texts, also=tuple(map(str, table.get("also", ()))), notes=notes, numbers=numbers)
+    notes, also = table.get("notes", []), table.get("also", [])
+    if not isinstance(notes, list) or not all(isinstance(note, list) and len(note) == 2 for note in notes):
+        raise LabError(f"{where}: notes: a list of [text, source] is needed.")
+    if not isinstance(also, list):
+        raise LabError(f"{where}: also: a list of names is needed.")
+    told = tuple((str(text), _source(sources, str(source), where)) for text, source in notes)
+    return Cargo(name=name, **texts, also=tuple(map(str, also)), notes=told, numbers=numbers)
 
 
 def _numbers(name: str, given: object, where: str, sources: Mapping[str, str] | None) -> tuple[Number, ...]:

@@ -111,6 +111,18 @@ def test_spheres_and_discs_have_their_own_friction():
     assert spheres.material.rolling_friction == soy.number("rolling_friction", "space").value == 0.05
 
 
+def test_rolling_friction_brings_its_laws_where_none_are_given_and_is_said_to_do_nothing_without(tmp_path):
+    soy = library()["soybeans"]
+    plain = tmp_path / "plain.toml"
+    plain.write_text('based_on = "tilting/quick"\ngrains.cargo = "soybeans"\n')
+    made = load(plain).resolved
+    assert made.material.rolling_friction == soy.number("rolling_friction", "plane").value
+    assert (made.contact.tangential, made.contact.rolling) == ("cundall-strack", "constant-torque")
+    without = load(plain, {"contact.rolling": "none"}).resolved
+    assert without.contact.rolling == "none"
+    assert "does nothing" in dict(described(without))["contact.rolling"]
+
+
 def test_bulk_takes_density_and_repose_in_place_of_another_friction():
     made = load(HOLD, {"bulk.cargo": "maize"}).resolved.bulk
     assert made.density == pytest.approx(0.5 * (709.5 + 746.0)) and made.slow_friction == pytest.approx(
@@ -170,6 +182,8 @@ def test_a_cargo_of_ones_own_lies_beside_the_preset_that_names_it(tmp_path):
         (MINE + '[bulk_density]\nvalue = "900 kg/m^3"\nsource = "us"', "no stowage factor in its range"),
         (MINE + '[friction]\nvalue = "0.5"\nsource = "us"', 'axes = "plane" or "space" is needed'),
         (MINE.replace('title = "Linseed"', ""), "title: missing"),
+        ('notes = "damp"\n' + MINE, r"notes: a list of \[text, source\]"),
+        ("also = 3\n" + MINE, "also: a list of names"),
         ("title = ", "not valid TOML"),
     ],
 )
