@@ -39,6 +39,7 @@ LARGEST_FILE = 1_000_000  # bytes
 MOST_DOTS = 10_000_000
 
 PLUGINS = "plugins"  # the key that names code which a preset needs
+SHIP_FILE = "ship.toml"  # beside the presets, but none: the file of a ship for `cargolab hull`
 QUICK = "-quick"  # suffix of a preset's name: its quick variant
 # Keys that describe one experiment and are not inherited by presets based on it.
 OWN_KEYS = ("title", "source", "reports", "based_on")
@@ -207,7 +208,7 @@ def _shipped() -> dict[str, Traversable]:
         for entry in folder.iterdir():
             if entry.is_dir():
                 yield from below(entry, f"{path}{entry.name}/")
-            elif entry.name.endswith(".toml"):
+            elif entry.name.endswith(".toml") and entry.name != SHIP_FILE:
                 yield path + entry.name.removesuffix(".toml"), entry
 
     return dict(sorted(below(PRESETS, "")))
