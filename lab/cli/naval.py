@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from lab.base.errors import LabError
 from lab.cli.completion import PresetName
 from lab.cli.options import (
     FilePath,
@@ -51,7 +52,7 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
 
 
 @click.command()
-@click.argument("file", type=TABLE)
+@click.argument("file", type=FilePath(path_type=Path))
 @click.option("--weights", type=TABLE, metavar="CSV", help="Weights that she carries: name, mass, lcg, tcg, vcg, fsm.")
 @click.option("--points", type=TABLE, metavar="CSV", help="Openings and the deck's edge: name, kind, x, y, z.")
 @click.option("--holds", type=TABLE, metavar="CSV", help="Holds: hold, aft, forward, z, half_breadth.")
@@ -117,9 +118,12 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
 @click.option(
     "--at", type=float, metavar="X", help="Also print the section at X (m) as the outline of a preset's ship."
 )
+@click.option(
+    "--units", type=click.Choice(["metric", "imperial"]), default="metric", help="Of the tables of a ship file."
+)
 @out_option("for tables and figure", "renders/hull/NAME")
 @json_option
-def hull(file: Path, out: Path | None, as_json: bool, **asked) -> None:
+def hull(file: Path, units: str, out: Path | None, as_json: bool, **asked) -> None:
     """Hydrostatics and cross curves of the hull in FILE; with --weights her draughts, levers and criteria.
 
     FILE is a table of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
@@ -129,7 +133,11 @@ def hull(file: Path, out: Path | None, as_json: bool, **asked) -> None:
     filled or filled-as-loaded; kind is opening or deck. With --weights she is judged by the IS Code, with --wind by its
     weather criterion, with --grain by the Grain Code, with --points up to the angle of downflooding.
 
+    FILE may be a ship file, ship.toml, or the folder with it: her tanks, holds, weights and loading conditions, which
+    are judged side by side. ship/handysize is one that comes with the lab.
+
     \b
+    cargolab hull ship/handysize --units imperial
     cargolab hull wigley.csv
     cargolab hull wigley.csv --step 0.25
     cargolab hull ship.csv --draught 8.5 --displacement 32000 --trim 0.6
@@ -137,12 +145,21 @@ def hull(file: Path, out: Path | None, as_json: bool, **asked) -> None:
     cargolab hull ship.csv --weights departure.csv --points openings.csv --holds holds.csv --grain grain.csv \\
         --wind 1500 10
     """
-    check_files(file, *(asked[name] for name in ("weights", "points", "holds", "grain")))
+    from lab.naval.ship_file.reading import is_ship_file
+
+    of_ship = is_ship_file(file)
+    check_files(None if of_ship else file, *(asked[name] for name in ("weights", "points", "holds", "grain")))
+    if units != "metric" and not of_ship:
+        raise LabError("--units: is of ship files; a table of offsets or a surface is told in metres.")
     from lab.naval.tables import objects
     from lab.report.hull import Asked, examine
+    from lab.report.ship_file.examine import examine as examine_ship
 
     folder = out or Path("renders/hull") / file.stem
-    text, found = examine(file, folder, Asked(**asked))
+    if of_ship:
+        text, found = examine_ship(file, folder, Asked(**asked), units)
+    else:
+        text, found = examine(file, folder, Asked(**asked))
     if as_json:
         tell_json({"folder": str(folder), **{name: objects(table) for name, table in found.items()}})
         return

@@ -152,7 +152,8 @@ def _distributed(name: str, keys: WeightKeys, key: str, source: Source) -> Item:
         if told is not None and abs(told - found) > slack:
             word = "mass" if what == "t" else "lcg"
             raise source.error(
-                f"{key}.{word}", f"is {told:g} {what}, and its distribution has {found:.6g} {what}; leave one of them out."
+                f"{key}.{word}",
+                f"is {told:g} {what}, and its distribution has {found:.6g} {what}; leave one of them out.",
             )
     return Item(name, mass, lcg, keys.tcg, keys.vcg, keys.fsm, keys.distribution)
 
@@ -161,7 +162,7 @@ def liquid(tank: str, space: Compartment, keys: TankKeys, fill: FillKeys, key: s
     """What is in a tank. Raises LabError for an amount that it does not hold."""
     density = density_of(keys.density if fill.density is None else fill.density)
     volume = _volume(space, fill, TONNE / density, key, source)
-    return Liquid(tank, space, volume, density, space.freest_volume() if keys.consumable else volume)
+    return Liquid(tank, space, volume, density, space.freest_volume if keys.consumable else volume)
 
 
 def cargo(hold: str, space: Compartment, keys: CargoKeys, key: str, source: Source) -> Cargo:

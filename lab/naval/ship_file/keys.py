@@ -23,7 +23,9 @@ class HullKeys:
     """The hull's lines and lengths, as `cargolab hull` takes them."""
 
     lines: Annotated[str, Doc("File of offsets (CSV), or of a surface (STL, OBJ), or a GHS geometry file (GF).")]
-    lbp: Annotated[Size | None, Doc("Length between perpendiculars; without it they are at her outermost stations.")] = None
+    lbp: Annotated[
+        Size | None, Doc("Length between perpendiculars; without it they are at her outermost stations.")
+    ] = None
     ap: Annotated[Place, Doc("Place x of the aft perpendicular.")] = 0.0
     lwl: Annotated[Size | None, Doc("Length in the waterline, for the weather criterion.")] = None
     keels: Annotated[Area, Doc("Area of bilge and bar keels.")] = 0.0
@@ -57,7 +59,9 @@ class OpeningKeys:
     """A point that must stay above water."""
 
     place: Annotated[Point, Doc("Its x, y, z.")]
-    kind: Annotated[Literal["opening", "deck"], Doc("A downflooding opening, or a point of the deck's edge.")] = "opening"
+    kind: Annotated[Literal["opening", "deck"], Doc("A downflooding opening, or a point of the deck's edge.")] = (
+        "opening"
+    )
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,8 @@ class TankKeys(SpaceKeys):
 
     density: Annotated[Density, Doc('Of its contents, kg/m³, or "salt", "fresh".')] = "salt"
     consumable: Annotated[
-        bool, Doc("Emptied on the way: its free surface is the largest up to 98 % (IS Code, B 3.1.3), whatever the level.")
+        bool,
+        Doc("Emptied on the way: its free surface is the largest up to 98 % (IS Code, B 3.1.3), whatever the level."),
     ] = False
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from lab.base.data import PRESETS
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
 from lab.naval.ship_file.keys import ShipKeys
@@ -55,13 +56,20 @@ class Source:
 
 
 def is_ship_file(path: Path) -> bool:
-    """Whether a path is one of a ship file, or a folder with one."""
-    return path.suffix.lower() == ".toml" or path.is_dir()
+    """Whether a path is one of a ship file, or a folder with one, or names one of the lab's own."""
+    return path.suffix.lower() == ".toml" or path.is_dir() or _own(path).is_file()
+
+
+def _own(path: Path) -> Path:
+    """Where the ship file of a name such as ship/handysize is, if it is the lab's own."""
+    return PRESETS / path / FILE
 
 
 def load_keys(path: Path) -> tuple[ShipKeys, Source]:
-    """The keys of a ship file, or of the ship.toml in a folder. Raises LabError."""
+    """The keys of a ship file, of the ship.toml in a folder, or of a ship of the lab's own. Raises LabError."""
     file = path / FILE if path.is_dir() else path
+    if not path.exists() and _own(path).is_file():
+        file = _own(path)
     try:
         content = read_bytes(file, LARGEST + 1)
     except (OSError, ValueError) as error:

@@ -87,7 +87,9 @@ def read_ship(path: Path | str) -> Ship:
     }
     maker = _Maker(keys, source, hull.form, tanks, holds, fixed)
     conditions = {name: maker.condition(name, one) for name, one in keys.conditions.items()}
-    return Ship(hull.name, hull.form, hull.water, hull.mesh, keys.name, tanks, holds, conditions, densities, keys, source)
+    return Ship(
+        hull.name, hull.form, hull.water, hull.mesh, keys.name, tanks, holds, conditions, densities, keys, source
+    )
 
 
 def _hull(keys: ShipKeys, source: Source) -> Hull:

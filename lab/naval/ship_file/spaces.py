@@ -42,7 +42,9 @@ def _sides(keys: SpaceKeys, key: str, source: Source) -> Iterator[tuple[str, lis
         return
     for _, outline in drawn:
         if outline[:, 0].min() < 0.0:
-            raise source.error(f"{key}.side", f"{keys.side} is of a section with y of at least 0; draw it to starboard.")
+            raise source.error(
+                f"{key}.side", f"{keys.side} is of a section with y of at least 0; draw it to starboard."
+            )
     mirrored = [(one, _mirror(outline)) for one, outline in drawn]
     if keys.side == "port":
         yield "", mirrored
@@ -67,7 +69,9 @@ def _lengths(keys: SpaceKeys, key: str, source: Source) -> list[tuple[str, Lengt
     single = keys.aft, keys.forward, keys.section
     if keys.lengths:
         if any(one is not None for one in single):
-            raise source.error(f"{key}.lengths", "each length has its own aft, forward and section; leave the others out.")
+            raise source.error(
+                f"{key}.lengths", "each length has its own aft, forward and section; leave the others out."
+            )
         found = [(f"{key}.lengths[{k}]", one) for k, one in enumerate(keys.lengths)]
     else:
         missing = [name for name, one in zip(("aft", "forward", "section"), single, strict=True) if one is None]
@@ -114,7 +118,7 @@ def _compartment(drawn: list[Drawn], keys: SpaceKeys, key: str, form: Form, sour
 
 
 def _check_inside(length: Length, form: Form, key: str, source: Source) -> None:
-    """Raise LabError for a length that stands out of the hull; above her deck, as in a coaming, of the deck's breadth."""
+    """Raise LabError for a length that stands out of the hull; above her deck, as in a coaming, of its breadth."""
     if length.aft < form.x[0] - SLACK * form.depth or length.forward > form.x[-1] + SLACK * form.depth:
         ends = f"{form.x[0]:g} to {form.x[-1]:g} m"
         raise source.error(key, f"stands out of the hull, whose stations reach from {ends}; shorten it.")

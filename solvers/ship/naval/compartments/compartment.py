@@ -26,7 +26,7 @@ import numpy as np
 from solvers.machine.errors import Unavailable
 from solvers.ship.section import Section, Stations
 
-HALVINGS = 60  # of the search for a level: of the bracket, 1e-18 is left
+HALVINGS, STEPS = 20, 3  # of the search for a level: first the bracket is halved, then follows Newton's method
 TOUCH = 1e-9  # of the compartment's size: so far below its level the surface is cut, so that corners do not lie in it
 FULL = 1e-9  # of the volume: a compartment that lacks no more than this is full
 NOMINALLY_FULL = 0.98  # of the volume: from there on no free surface is counted (2008 IS Code, part B 3.1.2)
@@ -87,7 +87,9 @@ class Compartment:
     def volume_to(self, level: float) -> float:
         """Volume (m³) up to a level (m), upright. Raises `Unavailable` for one below the floor or above the top."""
         if not self.floor <= level <= self.top:
-            raise Unavailable(f"a level of {level:.4g} m must be at least {self.floor:.4g} and at most {self.top:.4g} m.")
+            raise Unavailable(
+                f"a level of {level:.4g} m must be at least {self.floor:.4g} and at most {self.top:.4g} m."
+            )
         return self.permeability * float(self.stations.immersion(-level, 0.0).area)
 
     def level_of(self, volume: float, heel: np.ndarray | float = 0.0) -> np.ndarray:
@@ -106,15 +108,23 @@ class Compartment:
             middle = 0.5 * (low + high)
             less = self.stations.immersion(-middle, -heel).area < needed
             low, high = np.where(less, middle, low), np.where(less, high, middle)
-        return 0.5 * (low + high)
+        level = 0.5 * (low + high)
+        for _ in range(STEPS):
+            breadth = self.stations.waterplane(-level, -heel).breadth
+            off = self.stations.immersion(-level, -heel).area - needed
+            level = np.clip(level - off / np.where(breadth > 0.0, breadth, np.inf), low, high)
+        return level
 
     def centre(self, volume: float, heel: np.ndarray | float = 0.0) -> np.ndarray:
         """Centre x, y, z (…, 3) m, in the ship's axes, of a volume (m³) at heels (rad)."""
-        heel = np.asarray(heel, dtype=float)
-        level = self.level_of(volume, heel)
-        wet = self.stations.immersion(-level, -heel)
         if volume <= 0.0:
-            return np.broadcast_to([np.mean(self.ends), *self.stations.corners.mean(axis=0)], (*heel.shape, 3)).copy()
+            return np.broadcast_to([np.mean(self.ends), 0.0, self.floor], (*np.shape(heel), 3)).copy()
+        return self.centre_to(self.level_of(volume, heel), heel)
+
+    def centre_to(self, level: np.ndarray, heel: np.ndarray | float = 0.0) -> np.ndarray:
+        """Centre x, y, z (…, 3) m, in the ship's axes, of what lies up to levels (m) above K at heels (rad)."""
+        level, heel = np.broadcast_arrays(np.asarray(level, dtype=float), heel)
+        wet = self.stations.immersion(-level, -heel)
         areas = [one.section.immersion(-level, -heel).area for one in self.lengths]
         along = sum(one.long * one.middle * area for one, area in zip(self.lengths, areas, strict=True)) / wet.area
         aside, up = wet.moment / wet.area, level - wet.depth_moment / wet.area
@@ -130,22 +140,25 @@ class Compartment:
         return [(one.aft, one.forward, share) for one, share in zip(self.lengths, shares, strict=True)]
 
     def second_moment(self, volume: float) -> float:
-        """Second moment i (m⁴) of the upright free surface of a volume (m³) about its own middle line; 0 if full.
-
-        i = ∫y² dA − (∫y dA)²/∫dA over the whole surface, times the permeability.
-        """
+        """Second moment i (m⁴) of the upright free surface of a volume (m³) about its own middle line; 0 if full."""
         if not 0.0 < volume < self.volume * (1.0 - FULL):
             return 0.0
-        level = float(self.level_of(volume)) - TOUCH * self.stations.size
-        plane = self.stations.waterplane(-level, 0.0)
-        if not plane.breadth > 0.0:
-            return 0.0
-        return self.permeability * float(plane.second_moment - plane.moment**2 / plane.breadth)
+        return float(self.second_moment_at(self.level_of(volume)))
 
+    def second_moment_at(self, level: np.ndarray) -> np.ndarray:
+        """i (m⁴) of surfaces at levels (m): ∫y² dA − (∫y dA)²/∫dA over the whole surface, times the permeability."""
+        plane = self.stations.waterplane(TOUCH * self.stations.size - np.asarray(level), 0.0)
+        wide = plane.breadth > 0.0
+        own = plane.second_moment - plane.moment**2 / np.where(wide, plane.breadth, 1.0)
+        return self.permeability * np.where(wide, own, 0.0)
+
+    @cached_property
     def freest_volume(self) -> float:
         """The volume (m³) with the largest free surface, up to the filling that counts as full."""
-        volumes = NOMINALLY_FULL * self.volume * np.arange(1, SEARCHED + 1) / (SEARCHED + 1)
-        return float(max(volumes, key=self.second_moment))
+        levels = np.union1d(np.linspace(self.floor, self.top, SEARCHED)[1:], self.stations.corners[:, 1])
+        volumes = self.permeability * self.stations.immersion(-levels, 0.0).area
+        counts = (volumes > 0.0) & (volumes < NOMINALLY_FULL * self.volume)
+        return float(volumes[np.argmax(np.where(counts, self.second_moment_at(levels), -1.0))])
 
     def transfer(self, volume: float, heel: np.ndarray) -> np.ndarray:
         """M/ρ (m⁴) of a volume (m³) at heels (rad): the volume times the way of its centre to the side that goes down.

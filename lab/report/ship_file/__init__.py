@@ -1,0 +1,1 @@
+"""What `cargolab hull` tells of a ship file."""
