@@ -139,8 +139,19 @@ def hull(
     """The hull of a table of offsets (CSV) or a surface (STL): `hull.at(8.5)`, `hull.at(displacement=32000, trim=0.6)`.
 
     `hull.table()` has hydrostatics at round draughts, `hull.form` righting levers. density: of the water, kg/m³. The
-    others are the options of `cargolab hull`: lengths in m.
+    others are the options of `cargolab hull`: lengths in m. Of a ship file, which says these itself, it has
+    `conditions`, `tanks` and `holds` by name, too: `hull("ship.toml").conditions["departure"].metacentric_height`.
     """
+    from lab.naval.ship_file.reading import is_ship_file
+
+    if is_ship_file(Path(file)):
+        from lab.base.errors import LabError
+        from lab.naval.ship_file.ship import read_ship
+
+        given = (density, fair, lbp, ap, stations, scale, up, tuple(origin), mirror, close)
+        if given != (1025.0, False, None, 0.0, 41, 1.0, "z", (0.0, 0.0, 0.0), False, False):
+            raise LabError(f"{Path(file).name}: a ship file says the options of the hull itself; leave them out.")
+        return read_ship(file)
     from lab.naval.hull import read_hull
     from lab.naval.surfaces.axes import Axes
 

@@ -10,6 +10,7 @@ from lab.base.errors import LabError
 from lab.naval import tables
 from lab.naval.lengths import between
 from lab.naval.surfaces.axes import Axes
+from lab.naval.surfaces.gf import read_gf
 from lab.naval.surfaces.mesh import Mesh
 from lab.naval.surfaces.read import read_surface
 from solvers.machine.errors import Unavailable
@@ -17,7 +18,8 @@ from solvers.ship.naval.form import Form, Hydrostatics
 from solvers.ship.naval.upright import draught_for, level_at
 from solvers.ship.water import Water
 
-SURFACES = (".stl",)
+SURFACES = ".stl", ".obj"
+GEOMETRY = ".gf", ".gft"  # GHS geometry files
 DEEPEST = 0.95  # of the depth: the last draught of the tables
 
 
@@ -69,9 +71,9 @@ def read_hull(
     lwl: float | None = None,
     ap: float = 0.0,
 ) -> Hull:
-    """The hull of a file: offsets (CSV) or a surface (STL), in water of a density (kg/m³). Raises LabError.
+    """The hull of a file: offsets (CSV), a surface (STL, OBJ) or a GHS geometry file (GF). Raises LabError.
 
-    fair: fair curves between offsets; stations: fewest cuts of a surface; axes: of a surface. lbp, lwl, ap: see
+    density: of the water, kg/m³; fair: fair curves between offsets; stations: fewest cuts of a surface; axes: of a surface. lbp, lwl, ap: see
     `between`.
     """
     path = Path(path)
@@ -81,6 +83,10 @@ def read_hull(
         form, mesh = read_surface(path, stations, axes)
     elif axes != Axes():
         raise LabError(f"{path.name}: --scale, --up, --origin, --mirror and --close are for surfaces; leave them out.")
+    elif path.suffix.lower() in GEOMETRY:
+        if fair:
+            raise LabError(f"{path.name}: --fair is of tables of offsets; a geometry file has straight lines.")
+        form, mesh = read_gf(path), None
     else:
         form, mesh = read_offsets(path, fair), None
     _check_spacing(form, path.name)

@@ -11,7 +11,7 @@ from lab.base.files import write_text
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
-from lab.naval.hull import DEEPEST, Hull, read_hull
+from lab.naval.hull import DEEPEST, GEOMETRY, Hull, read_hull
 from lab.naval.loaded import Loaded, Wind
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
@@ -101,7 +101,7 @@ def examine(path: Path, folder: Path, asked: Asked) -> tuple[str, dict[str, tabl
         }
         lines = [f"{path.name}: {len(form.x)} stations over {np.ptp(form.x):.5g} m, depth {form.depth:.4g} m"]
         lines += self_check(form, mesh, asked.stations)
-        if mesh is None:
+        if mesh is None and path.suffix.lower() not in GEOMETRY:
             lines.append(f"  {between_offsets(path, form, asked.fair)}")
         lines += ["", *([f"  trim {asked.trim:g} m by the stern"] if asked.trim else [])]
         lines += columns(written["hydrostatics"], BRIEFLY)

@@ -78,7 +78,8 @@ def attained(rows: Mapping[str, Sequence[sheet.Row]]) -> Table:
         ]
         found = next(row for row in cells if row is not None).criterion
         numbers = [cell for row in cells for cell in _attained(row)]
-        lines.append((rule, what, found.kind, sheet.shown(found.limit, unit), unit, *numbers))
+        limits = {sheet.shown(row.criterion.limit, unit) for row in cells if row is not None}
+        lines.append((rule, what, found.kind, limits.pop() if len(limits) == 1 else "differs", unit, *numbers))
     header = [cell for name in rows for cell in (name, "margin", "")]
     return ("rule", "criterion", "required", "limit", "unit", *header), lines
 

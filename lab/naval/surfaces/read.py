@@ -1,4 +1,4 @@
-"""A hull from a surface of triangles: an STL file, cut by planes across the ship.
+"""A hull from a surface of triangles: an STL or OBJ file, cut by planes across the ship.
 
 The stations' volumes are compared with the surface's own, of the whole hull and up to each draught of the tables of
 hydrostatics. Stations are added until they agree.
@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.base.surfaces.stl import triangles_of
+from lab.base.surfaces import obj, stl
 from lab.naval.surfaces import whole
 from lab.naval.surfaces.axes import Axes, check_middle, check_size
 from lab.naval.surfaces.cuts import section_at
@@ -29,7 +29,7 @@ LEVELS = 10  # equal steps of draught at which volumes are compared
 
 
 def read_surface(path: Path, stations: int, axes: Axes = AS_IT_IS) -> tuple[Form, Mesh]:
-    """The hull of an STL file by at least so many cuts at equal distances, and its closed surface, both in m.
+    """The hull of an STL or OBJ file by at least so many cuts at equal distances, and its closed surface, both in m.
 
     Raises LabError for a file that is none, a surface that is not a single closed body in the hull's axes, a cut in
     several pieces, or stations that do not agree with the surface.
@@ -47,8 +47,9 @@ def read_surface(path: Path, stations: int, axes: Axes = AS_IT_IS) -> tuple[Form
 
 
 def closed_surface(path: Path, axes: Axes) -> Mesh:
-    """The closed surface of an STL file in the hull's axes. Raises LabError."""
-    mesh = welded(axes.placed(triangles_of(path)), path.name)
+    """The closed surface of an STL or OBJ file in the hull's axes. Raises LabError."""
+    triangles = obj.triangles_of(path) if path.suffix.lower() == ".obj" else stl.triangles_of(path)
+    mesh = welded(axes.placed(triangles), path.name)
     check_size(mesh)
     if axes.mirror:
         mesh = whole.mirrored(mesh)

@@ -7,6 +7,7 @@ from pathlib import Path
 from lab.base.errors import LabError
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
+from lab.naval.hull import GEOMETRY
 from lab.naval.ship_file import sheets
 from lab.naval.ship_file.imperial import imperial
 from lab.naval.ship_file.ship import Condition, Ship, read_ship
@@ -77,8 +78,9 @@ def _lines(ship: Ship, written: Mapping[str, tables.Table], criteria: tables.Tab
     form, own = ship.form, ship.keys.hull
     lines = [f"{ship.title}: {ship.name}, {len(form.x)} stations, depth {form.depth:.4g} m"]
     lines += self_check(form, ship.mesh, own.stations)
-    if ship.mesh is None and ship.source.path.parent.joinpath(own.lines).suffix.lower() == ".csv":
-        lines.append(f"  {between_offsets(ship.source.path.parent / own.lines, form, own.fair)}")
+    drawn = ship.source.path.parent / own.lines
+    if ship.mesh is None and drawn.suffix.lower() not in GEOMETRY:
+        lines.append(f"  {between_offsets(drawn, form, own.fair)}")
     header, rows = written["hydrostatics"]
     brief = [k for k, name in enumerate(header) if name.split(" ")[0] in {one.split(" ")[0] for one in BRIEFLY}]
     lines += ["", *laid(([header[k] for k in brief], [[row[k] for k in brief] for row in rows]), 0)]

@@ -30,6 +30,7 @@ HALVINGS, STEPS = 20, 3  # of the search for a level: first the bracket is halve
 TOUCH = 1e-9  # of the compartment's size: so far below its level the surface is cut, so that corners do not lie in it
 FULL = 1e-9  # of the volume: a compartment that lacks no more than this is full
 NOMINALLY_FULL = 0.98  # of the volume: from there on no free surface is counted (2008 IS Code, part B 3.1.2)
+ALIKE = 1e-3  # second moments that differ by this share count as alike
 SEARCHED = 99  # levels at which the largest free surface is looked for
 
 
@@ -154,11 +155,16 @@ class Compartment:
 
     @cached_property
     def freest_volume(self) -> float:
-        """The volume (m³) with the largest free surface, up to the filling that counts as full."""
+        """The volume (m³) with the largest free surface, up to the filling that counts as full.
+
+        Of volumes with surfaces as large it is that nearest to half full, of which most is transferred.
+        """
         levels = np.union1d(np.linspace(self.floor, self.top, SEARCHED)[1:], self.stations.corners[:, 1])
         volumes = self.permeability * self.stations.immersion(-levels, 0.0).area
         counts = (volumes > 0.0) & (volumes < NOMINALLY_FULL * self.volume)
-        return float(volumes[np.argmax(np.where(counts, self.second_moment_at(levels), -1.0))])
+        second = np.where(counts, self.second_moment_at(levels), -1.0)
+        largest = second >= second.max() * (1.0 - ALIKE)
+        return float(volumes[largest][np.argmin(np.abs(volumes[largest] - 0.5 * self.volume))])
 
     def transfer(self, volume: float, heel: np.ndarray) -> np.ndarray:
         """M/ρ (m⁴) of a volume (m³) at heels (rad): the volume times the way of its centre to the side that goes down.
