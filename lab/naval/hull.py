@@ -73,8 +73,8 @@ def read_hull(
 ) -> Hull:
     """The hull of a file: offsets (CSV), a surface (STL, OBJ) or a GHS geometry file (GF). Raises LabError.
 
-    density: of the water, kg/m³; fair: fair curves between offsets; stations: fewest cuts of a surface; axes: of a surface. lbp, lwl, ap: see
-    `between`.
+    density: of the water, kg/m³; fair: fair curves between offsets; stations: fewest cuts of a surface; axes: of a
+    surface. lbp, lwl, ap: see `between`.
     """
     path = Path(path)
     if path.suffix.lower() in SURFACES:

@@ -5,6 +5,7 @@ face, texture and normal, is left out. A face of more than three corners becomes
 which is right for those that are convex and flat.
 """
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -55,7 +56,7 @@ def _fan(corners: list[int]) -> list[tuple[int, int, int]]:
     """The triangles of a face. Raises ValueError for one with fewer than three corners."""
     if len(corners) < 3:
         raise ValueError
-    return [(corners[0], one, other) for one, other in zip(corners[1:-1], corners[2:], strict=True)]
+    return [(corners[0], one, other) for one, other in pairwise(corners[1:])]
 
 
 def _what(word: str) -> str:

@@ -1,7 +1,7 @@
 """A hull from a GHS geometry file (GF): sections of one shape, as the format's public description has them.
 
-Source: "General HydroStatics System, Geometry File Format" (Creative Systems 1999). The file is text: after a title come
-shapes (`*`: a name, sections with their longitudinal place and points y, z), components (`**`: a shape with side,
+Source: "General HydroStatics System, Geometry File Format" (Creative Systems 1999). The file is text: after a title
+come shapes (`*`: a name, sections with their longitudinal place and points y, z), components (`**`: a shape with side,
 effectiveness and shift) and parts (`***`: components with a type; 1 displaces), up to `****`. Distances are in feet,
 longitudinal places grow towards the stern: x here is minus the file's, in m, so that it grows forward.
 
@@ -90,7 +90,8 @@ def read_gf(path: Path) -> Form:
     if len(hulls) != 1 or len(hulls[0][1]) != 1:
         found = ", ".join(f"{name} of {len(members)}" for name, members in hulls) or "none"
         raise LabError(
-            f"{path.name}: displacing parts and their components are {found}; give a file with one part of one component."
+            f"{path.name}: displacing parts and their components are {found}; give a file with one part of one "
+            "component."
         )
     one = components.get(hulls[0][1][0])
     if one is None or one.shape not in shapes:
@@ -161,7 +162,7 @@ def _section(points: np.ndarray, one: _Component) -> Section | None:
         points = np.concatenate([points, points[::-1] * [-1.0, 1.0]])
     elif one.side < 0:
         points = points[::-1] * [-1.0, 1.0]
-    outline = FOOT * (points + [one.shift[1], one.shift[2]])
+    outline = FOOT * (points + np.array(one.shift[1:]))
     size = float(np.ptp(outline, axis=0).max())
     outline = outline[np.hypot(*(outline - np.roll(outline, 1, axis=0)).T) > ROUNDING * max(size, FOOT)]
     if len(outline) < 3 or np.ptp(outline[:, 0]) <= ROUNDING * size:
