@@ -5,42 +5,56 @@ import tomllib
 
 HEADER = re.compile(r"^\s*\[\[?\s*([^\]]+?)\s*\]\]?\s*(?:#.*)?$")
 PART = re.compile(r"""\s*(?:"([^"]*)"|'([^']*)'|([A-Za-z0-9_-]+))\s*""")
-TEXTS = re.compile(r'"""|\'\'\'|"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*|[\[\]{}]')
+TOKEN = re.compile(r'"""|\'\'\'|"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*|[\[\]{}]')
+LONG = '"""', "'''"
+INDEX = re.compile(r"\[(\d+)\]")
+
+Places = dict[tuple[str, ...], int]
 
 
-def places(text: str) -> dict[tuple[str, ...], int]:
-    """The line, from 1, of each table's header and each key of a TOML text, by its parts.
+def places(text: str) -> Places:
+    """The line, from 1, of each table's header, each key and each item of a list, by its parts.
 
-    Keys of inline tables are at the line on which they stand, if they begin one, else at that of the table.
+    The items that count are tables and lists: those that begin a value in brackets. Keys of inline tables are none of
+    their own.
     """
-    found: dict[tuple[str, ...], int] = {}
-    table: tuple[str, ...] = ()
-    depth, quote, key = 0, "", ()
+    found: Places = {}
+    table, key = (), ()
+    depth, quote = 0, ""
     for number, line in enumerate(text.splitlines(), start=1):
         if not depth and not quote:
             if header := HEADER.match(line):
-                table = _parts(header[1])
+                table, key = _parts(header[1]), ()
                 found.setdefault(table, number)
                 continue
             key = _key(line)
             for end in range(1, len(key) + 1):
                 found.setdefault((*table, *key[:end]), number)
-        elif depth and key and not quote:
-            _inner(line, (*table, *key), number, found)
-        depth, quote = _after(line, depth, quote)
+            line = line.partition("=")[2]
+        for token in TOKEN.findall(line):
+            if quote:
+                quote = "" if token == quote else quote
+            elif token in LONG:
+                quote = token
+            elif token in ("[", "{"):
+                if depth == 1 and key:
+                    _count_item((*table, *key), number, found)
+                depth += 1
+            elif token in ("]", "}"):
+                depth = max(depth - 1, 0)
     return found
 
 
-def line_of(known: dict[tuple[str, ...], int], dotted: str) -> int | None:
-    """The line of a dotted key, or of the nearest table above it that is written; None: of none."""
-    parts = tuple(re.sub(r"\[\d+\]", "", dotted).split("."))
-    numbers = re.findall(r"\[(\d+)\]", dotted)
-    if numbers and (item := known.get((*parts[: 1 + _first_list(dotted)], numbers[0]))):
-        return item
-    for end in range(len(parts), 0, -1):
-        if parts[:end] in known:
-            return known[parts[:end]]
-    return None
+def line_of(known: Places, dotted: str) -> int | None:
+    """The line of a dotted key, of the first key below it, or of the nearest one above it; None: of none."""
+    parts: list[str] = []
+    for part in dotted.split("."):
+        parts += [INDEX.sub("", part), *INDEX.findall(part)]
+    whole = tuple(parts)
+    below = [line for key, line in known.items() if key[: len(whole)] == whole]
+    if whole not in known and below:
+        return min(below)
+    return next((known[whole[:end]] for end in range(len(whole), 0, -1) if whole[:end] in known), None)
 
 
 def of_error(error: tomllib.TOMLDecodeError) -> tuple[int | None, str]:
@@ -51,32 +65,12 @@ def of_error(error: tomllib.TOMLDecodeError) -> tuple[int | None, str]:
     return None, told.removesuffix(" (at end of document)")
 
 
-def _first_list(dotted: str) -> int:
-    """How many dots stand before the first [ of a dotted key."""
-    return dotted[: dotted.index("[")].count(".")
-
-
-def _inner(line: str, path: tuple[str, ...], number: int, found: dict[tuple[str, ...], int]) -> None:
-    """Note the line of an item of a list: items are counted by the lines that begin with a bracket."""
-    if line.strip().startswith(("{", "[")):
-        item = sum(1 for one in found if one[:-1] == path and one[-1].isdigit())
-        found[*path, str(item)] = number
-
-
-def _after(line: str, depth: int, quote: str) -> tuple[int, str]:
-    """Depth of brackets and open long text after a line."""
-    for one in TEXTS.findall(line):
-        if quote:
-            quote = "" if one == quote else quote
-        elif one in ('"""', "'''"):
-            quote = one
-        elif one in ("[", "{"):
-            depth += 1
-        elif one in ("]", "}"):
-            depth -= 1
-        elif one.startswith("#"):
-            break
-    return max(depth, 0), quote
+def _count_item(path: tuple[str, ...], number: int, found: Places) -> None:
+    """Note the line of the next item of a list."""
+    item = 0
+    while (*path, str(item)) in found:
+        item += 1
+    found[*path, str(item)] = number
 
 
 def _key(line: str) -> tuple[str, ...]:
@@ -89,7 +83,7 @@ def _parts(text: str) -> tuple[str, ...]:
     """The parts of a dotted key."""
     found, place = [], 0
     while match := PART.match(text, place):
-        found.append(match[1] if match[1] is not None else match[2] if match[2] is not None else match[3])
+        found.append(next(one for one in match.groups() if one is not None))
         place = match.end()
         if not text[place:].startswith("."):
             break
