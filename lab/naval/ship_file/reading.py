@@ -35,6 +35,11 @@ class Source:
     def _places(self) -> dict[tuple[str, ...], int]:
         return places(self.text)
 
+    def has(self, key: str) -> bool:
+        """Whether a dotted key is written in the file."""
+        parts = tuple(key.split("."))
+        return any(one[: len(parts)] == parts for one in self._places)
+
     def error(self, key: str, sentence: str) -> LabError:
         """An error on a dotted key, with its line."""
         line = line_of(self._places, key)
@@ -48,9 +53,7 @@ class Source:
         except (LabError, Unavailable) as error:
             sentence = re.sub(r"--([a-z]+)", r"hull.\1", str(error))
             named = KEY.match(sentence)
-            if not key and named:
-                raise self.error(named[1], sentence[named.end() :]) from None
-            if named and named[1].startswith("hull."):
+            if named and (not key or named[1].startswith("hull.")):
                 raise self.error(named[1], sentence[named.end() :]) from None
             raise self.error(key, sentence) if key else LabError(f"{self.path.name}: {sentence}") from None
 

@@ -13,7 +13,7 @@ from lab.naval.ship_file import items
 from lab.naval.ship_file.items import Cargo, Item, Liquid
 from lab.naval.ship_file.keys import ConditionKeys, ShipKeys, WindKeys
 from lab.naval.ship_file.reading import Source, load_keys
-from lab.naval.ship_file.spaces import members, spaces, unknown
+from lab.naval.ship_file.spaces import check_apart, members, spaces, unknown
 from lab.naval.surfaces.axes import Axes
 from lab.naval.weights import Weights
 from solvers.ship.naval.compartments.compartment import Compartment
@@ -81,6 +81,10 @@ def read_ship(path: Path | str) -> Ship:
     hull = _hull(keys, source)
     tanks = spaces("tanks", keys.tanks, hull.form, source)
     holds = spaces("holds", keys.holds, hull.form, source)
+    check_apart(
+        {f"tanks.{name}": one for name, one in tanks.items()} | {f"holds.{name}": one for name, one in holds.items()},
+        source,
+    )
     fixed = [items.weight(name, one, f"weights.{name}", source) for name, one in keys.weights.items()]
     densities = {
         name: items.density_of(one.density) for given, one in keys.tanks.items() for name in members(given, tanks)

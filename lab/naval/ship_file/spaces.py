@@ -2,10 +2,12 @@
 
 import re
 from collections.abc import Iterator
+from itertools import combinations
 
 import numpy as np
 
 from lab.naval.compartments import SLACK, half_breadth
+from lab.naval.flooding.overlap import shared_area
 from lab.naval.ship_file.keys import LengthKeys, SpaceKeys
 from lab.naval.ship_file.reading import Source
 from solvers.machine.errors import Unavailable
@@ -14,6 +16,7 @@ from solvers.ship.naval.form import Form
 from solvers.ship.section import ROUNDING, Section
 
 Drawn = tuple[LengthKeys, np.ndarray]  # a length and its outline (n, 2) m
+SHARED = 0.01  # of a space: so much two of them may overlap, as roughly drawn ones do
 PORT, STARBOARD = "-p", "-s"  # ends of the names of a pair of spaces
 
 
@@ -133,6 +136,21 @@ def _check_inside(length: Length, form: Form, key: str, source: Source) -> None:
                     f"stands out of the hull at x {x:g}, y {y:g}, z {z:g} m, where her half-breadth is {room:.4g} m; "
                     "make it smaller.",
                 )
+
+
+def check_apart(found: dict[str, Compartment], source: Source) -> None:
+    """Raise LabError for two spaces, by their dotted keys, that share more than SHARED of the smaller one's volume."""
+    for (one, first), (other, second) in combinations(found.items(), 2):
+        shared = sum(_shared(a, b) for a in first.lengths for b in second.lengths)
+        if shared > SHARED * min(first.stations.area, second.stations.area):
+            key = other if source.has(other) else other[: -len(PORT)]  # one of a pair
+            raise source.error(key, f"shares {shared:.4g} m3 with {one}; make one of them smaller.")
+
+
+def _shared(one: Length, other: Length) -> float:
+    """Volume (m³) that two lengths share."""
+    along = min(one.forward, other.forward) - max(one.aft, other.aft)
+    return along * shared_area(one.section.outline, other.section.outline) if along > 0.0 else 0.0
 
 
 def unknown(known: dict[str, Compartment], what: str) -> str:

@@ -33,6 +33,7 @@ def line(text: str) -> int:
         ("[13.3, 5.9]", "[14, 5.9]", "[holds.h3]", "holds.h3: stands out of the hull at x 50, y 14, z 5.9 m"),
         ("[13, 2], [13, 6]", "[13, 6], [13, 2]", "[[9, 2]", "tanks.wing.section: its outline crosses or touch"),
         ("[9, 2], [13, 2]", "[-9, 2], [13, 2]", 'side = "pair"', "tanks.wing.side: pair is of a section with y of at"),
+        ("aft = 80", "aft = 70", "[holds.h3]", "holds.h3: shares 47.6 m3 with tanks.wing-p"),
         ("density = 1000", "density = 1.025", "density = 1000", "tanks.wing.density: must be at least 500 kg/m^3"),
         ('full = "50 %"', "full = 95", "wing = { full", "conditions.departure.fills.wing.full: must be at most 1"),
         ('full = "50 %"', "level = 7", "wing = { full", "wing.level: a level of 7 m must be at least 2"),

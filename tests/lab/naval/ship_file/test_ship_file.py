@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ from lab.cli.naval import hull
 from lab.naval import sheet, tables
 from lab.naval.ship_file import sheets
 from lab.naval.ship_file.imperial import imperial
+from lab.naval.ship_file.keys import ShipKeys
 from lab.naval.ship_file.ship import read_ship
+from lab.preset.fields import walk
 from tests.oracles.presets import error_of
 from tests.oracles.ship_file import HALF, HOLD, LENGTH, changed, write
 
@@ -187,3 +190,11 @@ def test_options_that_the_file_replaces_are_refused(box, tmp_path):
     assert isinstance(answer.exception, Exception) and "write hull.lbp in the file" in str(answer.exception)
     said = error_of(lambda: cargolab.hull(box, fair=True))
     assert said.startswith("ship.toml: a ship file says the options of the hull itself")
+
+
+def test_the_page_names_every_key():
+    page = (Path(__file__).parents[4] / "docs" / "naval" / "ship-file.md").read_text(encoding="utf-8")
+    tables = {"hull", "water", "tanks", "holds", "openings", "conditions", "fills", "cargo", "wind"}
+    keys = {key.split(".")[-1] for key, _ in walk(ShipKeys)} - tables
+    assert len(keys) > 40 and [key for key in keys if f"`{key}" not in page] == []
+    assert [table for table in tables if not re.search(rf"\[({table}|\w+\.NAME\.{table})[.\]]", page)] == []
