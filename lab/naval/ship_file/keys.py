@@ -71,6 +71,9 @@ class LengthKeys:
     aft: Annotated[Place, Doc("Its aft end, x.")]
     forward: Annotated[Place, Doc("Its forward end, x.")]
     section: Polygon
+    forward_section: Annotated[
+        Polygon | None, Doc("Corners at its forward end, as many and in the same order; it narrows straight to them.")
+    ] = None
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,9 @@ class SpaceKeys:
     aft: Annotated[Place | None, Doc("Its aft end, x.")] = None
     forward: Annotated[Place | None, Doc("Its forward end, x.")] = None
     section: Annotated[Polygon | None, Doc("Corners y, z of its section, y to starboard, in order round it.")] = None
+    forward_section: Annotated[
+        Polygon | None, Doc("Corners at its forward end, as many and in the same order; it narrows straight to them.")
+    ] = None
     lengths: Annotated[
         tuple[LengthKeys, ...], Doc("Lengths with sections of their own, {aft, forward, section}, from aft to forward.")
     ] = ()

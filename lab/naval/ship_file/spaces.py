@@ -1,8 +1,9 @@
 """Tanks and holds of a ship file as compartments, checked to be inside of the hull."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,9 +16,18 @@ from solvers.ship.naval.compartments.compartment import Compartment, Length
 from solvers.ship.naval.form import Form
 from solvers.ship.section import ROUNDING, Section
 
-Drawn = tuple[LengthKeys, np.ndarray]  # a length and its outline (n, 2) m
+STRIPS = 6  # of a length that narrows, two slabs each
 SHARED = 0.01  # of a space: so much two of them may overlap, as roughly drawn ones do
 PORT, STARBOARD = "-p", "-s"  # ends of the names of a pair of spaces
+
+
+class _Drawn(NamedTuple):
+    """A length: its key, its ends x (m), its outline (n, 2) m."""
+
+    where: str
+    aft: float
+    forward: float
+    outline: np.ndarray
 
 
 def spaces(table: str, given: dict[str, SpaceKeys], form: Form, source: Source) -> dict[str, Compartment]:
@@ -28,7 +38,7 @@ def spaces(table: str, given: dict[str, SpaceKeys], form: Form, source: Source) 
         for end, outlines in _sides(keys, key, source):
             if name + end in found:
                 raise source.error(key, f"there is another space {name + end}; give one of them another name.")
-            found[name + end] = _compartment(outlines, keys, key, form, source)
+            found[name + end] = _compartment(outlines, keys, form, source)
     return found
 
 
@@ -37,39 +47,36 @@ def members(name: str, known: dict[str, Compartment]) -> list[str]:
     return [one for one in (name, name + PORT, name + STARBOARD) if one in known]
 
 
-def _sides(keys: SpaceKeys, key: str, source: Source) -> Iterator[tuple[str, list[Drawn]]]:
+def _sides(keys: SpaceKeys, key: str, source: Source) -> Iterator[tuple[str, list[_Drawn]]]:
     """The spaces that a table describes: the end of the name, and its lengths with outlines counter-clockwise."""
-    drawn = [(one, _outline(one, where, source)) for where, one in _lengths(keys, key, source)]
+    drawn = [slab for where, one in _lengths(keys, key, source) for slab in _slabs(one, where, source)]
     if keys.side == "as-drawn":
         yield "", drawn
         return
-    for _, outline in drawn:
-        if outline[:, 0].min() < 0.0:
-            raise source.error(
-                f"{key}.side", f"{keys.side} is of a section with y of at least 0; draw it to starboard."
-            )
-    mirrored = [(one, _mirror(outline)) for one, outline in drawn]
+    if any(one.outline[:, 0].min() < 0.0 for one in drawn):
+        raise source.error(f"{key}.side", f"{keys.side} is of a section with y of at least 0; draw it to starboard.")
+    mirrored = [one._replace(outline=_mirror(one.outline)) for one in drawn]
     if keys.side == "port":
         yield "", mirrored
     elif keys.side == "pair":
         yield PORT, mirrored
         yield STARBOARD, drawn
     else:
-        yield "", [pair for one, outline in drawn for pair in _both(one, outline)]
+        yield "", [one._replace(outline=outline) for one in drawn for outline in _both(one.outline)]
 
 
-def _both(one: LengthKeys, outline: np.ndarray) -> list[Drawn]:
-    """A length on both sides: one outline where an edge lies in the middle plane, else two that communicate."""
+def _both(outline: np.ndarray) -> list[np.ndarray]:
+    """A section on both sides: one outline where an edge lies in the middle plane, else two that communicate."""
     middle = np.flatnonzero((outline[:, 0] == 0.0) & (np.roll(outline[:, 0], -1) == 0.0))
     if len(middle) != 1:
-        return [(one, outline), (one, _mirror(outline))]
+        return [outline, _mirror(outline)]
     half = np.roll(outline, -int(middle[0]) - 1, axis=0)  # begins and ends in the middle plane
-    return [(one, np.concatenate([half, _mirror(half)[1:-1]]))]
+    return [np.concatenate([half, _mirror(half)[1:-1]])]
 
 
 def _lengths(keys: SpaceKeys, key: str, source: Source) -> list[tuple[str, LengthKeys]]:
     """The lengths of a space with their keys, from aft to forward."""
-    single = keys.aft, keys.forward, keys.section
+    single = keys.aft, keys.forward, keys.section, keys.forward_section
     if keys.lengths:
         if any(one is not None for one in single):
             raise source.error(
@@ -77,7 +84,7 @@ def _lengths(keys: SpaceKeys, key: str, source: Source) -> list[tuple[str, Lengt
             )
         found = [(f"{key}.lengths[{k}]", one) for k, one in enumerate(keys.lengths)]
     else:
-        missing = [name for name, one in zip(("aft", "forward", "section"), single, strict=True) if one is None]
+        missing = [name for name, one in zip(("aft", "forward", "section"), single[:3], strict=True) if one is None]
         if missing:
             raise source.error(key, f"has no {missing[0]}; give aft, forward and section, or lengths.")
         found = [(key, LengthKeys(*single))]
@@ -91,11 +98,37 @@ def _lengths(keys: SpaceKeys, key: str, source: Source) -> list[tuple[str, Lengt
     return found
 
 
-def _outline(keys: LengthKeys, where: str, source: Source) -> np.ndarray:
-    """The corners (n, 2) m of a section, counter-clockwise. Raises LabError for one that is no simple polygon."""
-    corners = np.array(keys.section, dtype=float).reshape(-1, 2)
+def _slabs(keys: LengthKeys, where: str, source: Source) -> list[_Drawn]:
+    """A length as it is, or where it narrows as slabs, whose sections are those at Gauss's two points of each strip.
+
+    So its volume is exact, as areas go with the square of the place.
+    """
+    aft = _corners(keys.section, f"{where}.section", source)
+    if keys.forward_section is None:
+        return [_Drawn(where, keys.aft, keys.forward, _outline(aft, f"{where}.section", source))]
+    fore = _corners(keys.forward_section, f"{where}.forward_section", source)
+    if len(fore) != len(aft):
+        raise source.error(
+            f"{where}.forward_section", f"has {len(fore)} corners, and section has {len(aft)}; give as many."
+        )
+    edges = np.linspace(0.0, 1.0, 2 * STRIPS + 1)
+    offs = np.tile([1.0 - 1.0 / np.sqrt(3.0), 1.0 / np.sqrt(3.0)], STRIPS)  # of a slab: where its Gauss point is
+    places = edges[:-1] + offs * np.diff(edges)
+    ends, key = keys.aft + edges * (keys.forward - keys.aft), f"{where}.forward_section"
+    outlines = [_outline(aft + share * (fore - aft), key, source) for share in places]
+    return [_Drawn(where, *slab) for slab in zip(ends[:-1].tolist(), ends[1:].tolist(), outlines, strict=True)]
+
+
+def _corners(given: Sequence[tuple[float, float]], where: str, source: Source) -> np.ndarray:
+    """The corners (n, 2) m of a section."""
+    corners = np.array(given, dtype=float).reshape(-1, 2)
     if len(corners) < 3:
-        raise source.error(f"{where}.section", "needs at least three corners [y, z].")
+        raise source.error(where, "needs at least three corners [y, z].")
+    return corners
+
+
+def _outline(corners: np.ndarray, where: str, source: Source) -> np.ndarray:
+    """The corners (n, 2) m counter-clockwise. Raises LabError for those of no simple polygon."""
     y, z = corners.T
     if y @ np.roll(z, -1) - z @ np.roll(y, -1) < 0.0:
         corners = corners[::-1]
@@ -103,7 +136,7 @@ def _outline(keys: LengthKeys, where: str, source: Source) -> np.ndarray:
         return Section(corners).outline
     except Unavailable as error:
         said = re.sub(r"^the hull's outline ", "", str(error))
-        raise source.error(f"{where}.section", f"its outline {said}") from None
+        raise source.error(where, f"its outline {said}") from None
 
 
 def _mirror(outline: np.ndarray) -> np.ndarray:
@@ -111,12 +144,13 @@ def _mirror(outline: np.ndarray) -> np.ndarray:
     return outline[::-1] * [-1.0, 1.0]
 
 
-def _compartment(drawn: list[Drawn], keys: SpaceKeys, key: str, form: Form, source: Source) -> Compartment:
+def _compartment(drawn: list[_Drawn], keys: SpaceKeys, form: Form, source: Source) -> Compartment:
     """The compartment of lengths with outlines. Raises LabError where one stands out of the hull."""
-    lengths = [Length(Section(outline), one.aft, one.forward) for one, outline in drawn]
-    for (one, _), length in zip(drawn, lengths, strict=True):
-        where = f"{key}.lengths[{keys.lengths.index(one)}]" if keys.lengths else key
-        _check_inside(length, form, where, source)
+    lengths = []
+    for one in drawn:
+        with source.told(one.where):
+            lengths.append(Length(Section(one.outline), one.aft, one.forward))
+        _check_inside(lengths[-1], form, one.where, source)
     return Compartment(lengths, keys.permeability)
 
 

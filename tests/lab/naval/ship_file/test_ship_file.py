@@ -133,6 +133,18 @@ def test_weights_spread_along_her(box):
     assert blocks[:, 2] @ middles / 20_000.0 == pytest.approx(69.0, abs=0.01)
 
 
+def test_a_tank_that_narrows_forward(box):
+    """A prismatoid: V = l (A_aft + 4 A_middle + A_fore)/6, LCG from ∫ x A dx."""
+    text = "section = [[9, 2], [13, 2], [13, 6], [9, 6]]\nforward_section = [[9, 4], [10, 4], [10, 6], [9, 6]]"
+    tank = read_ship(changed(box, text.splitlines()[0], text)).tanks["wing-s"]
+    middle = 2.5 * 3.0
+    assert tank.volume == pytest.approx(0.95 * 20.0 * (16.0 + 4.0 * middle + 2.0) / 6.0, rel=1e-12)
+    share = np.linspace(0.0, 1.0, 2001)
+    area = (4.0 - 3.0 * share) * (4.0 - 2.0 * share)
+    assert tank.centre(tank.volume)[0] == pytest.approx(80.0 + 20.0 * (share @ area) / area.sum(), abs=0.02)
+    assert tank.ends == (80.0, 100.0) and tank.floor == pytest.approx(2.0, abs=0.1)
+
+
 def test_filled_holds_have_the_centre_of_their_whole_volume(box):
     """With it goes the Grain Code's factor of 1.00; filled as loaded has its own centre and 1.06."""
     level, found = 'level = 7.93, stowage = 1.3, filling = "partly-filled"', {}
