@@ -48,8 +48,7 @@ def _row(header, line):
 def _unit(name: str) -> str | None:
     """The unit that a column's name ends with."""
     words = name.split()
-    found = next((" ".join(words[-n:]) for n in (2, 1) if " ".join(words[-n:]) in UNITS and len(words) > n), None)
-    return found
+    return next((" ".join(words[-n:]) for n in (2, 1) if " ".join(words[-n:]) in UNITS and len(words) > n), None)
 
 
 def _renamed(name: str, unit: str) -> str:

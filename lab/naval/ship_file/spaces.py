@@ -44,7 +44,7 @@ def spaces(table: str, given: dict[str, SpaceKeys], form: Form, source: Source) 
 
 def members(name: str, known: dict[str, Compartment]) -> list[str]:
     """The names of the spaces that a name in a condition means: itself, or both of a pair."""
-    return [one for one in (name, name + PORT, name + STARBOARD) if one in known]
+    return [name] if name in known else [one for one in (name + PORT, name + STARBOARD) if one in known]
 
 
 def _sides(keys: SpaceKeys, key: str, source: Source) -> Iterator[tuple[str, list[_Drawn]]]:
