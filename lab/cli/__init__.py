@@ -12,6 +12,8 @@ from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.options import plugins_option
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import cargoes, outline, schema
+from lab.cli.presets import outline, schema
+from lab.cli.roll import roll_damping
 from lab.cli.runs import bed, explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
 from lab.cli.sweeps import calibrate, sweep
@@ -60,6 +62,7 @@ for command in (
     report,
     reproduce,
     resume,
+    roll_damping,
     run,
     schema,
     sheet,

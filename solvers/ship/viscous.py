@@ -46,11 +46,15 @@ def friction_damping(
 
     ITTC 7.5-02-07-04.5, eqs. 2.9 to 2.13. C_f is proportional to 1/a, so the amplitude a cancels.
     """
-    fullness, below = _fullness(breadth, draught, radius), draught - centre
-    girth = 1.7 * draught + fullness * breadth
-    arm = ((0.887 + 0.145 * fullness) * girth - 2.0 * below) / pi
+    girth, arm = friction_arm(breadth, draught, _fullness(breadth, draught, radius), centre)
     layer = 1.328 * sqrt(2.0 * pi / frequency * VISCOSITY / 3.22) / arm  # a C_f
     return 4.0 / (3.0 * pi) * density * girth * arm**3 * frequency * layer
+
+
+def friction_arm(breadth: float, draught: float, fullness: float, centre: float) -> tuple[float, float]:
+    """Girth s and arm r (m) of skin friction, of a section or, with her block coefficient, of a ship (Kato 1957)."""
+    girth = 1.7 * draught + fullness * breadth
+    return girth, ((0.887 + 0.145 * fullness) * girth - 2.0 * (draught - centre)) / pi
 
 
 def eddy_coefficient(breadth: float, draught: float, radius: float, centre: float) -> float:
@@ -59,7 +63,11 @@ def eddy_coefficient(breadth: float, draught: float, radius: float, centre: floa
     C_R = {(1 − f₁R/d)(1 − OG/d − f₁R/d) + f₂ (H₀ − f₁R/d)²} C_P (r/d)², r the distance of the furthest point from the
     axis. C_P is the pressure coefficient behind it, from the ratio γ of the potential flow's speed there to the mean.
     """
-    fullness = _fullness(breadth, draught, radius)
+    return section_eddies(breadth, draught, radius, _fullness(breadth, draught, radius), centre)
+
+
+def section_eddies(breadth: float, draught: float, radius: float, fullness: float, centre: float) -> float:
+    """`eddy_coefficient` of a section with a bilge `radius` (m) and any `fullness`, area over breadth and draught."""
     half, deep, bilge = 0.5 * breadth / draught, (draught - centre) / draught, radius / draught
     furthest, ratio = _lewis_flow(breadth, draught, fullness, deep)
     pressure = 0.5 * (0.87 * exp(-ratio) - 4.0 * exp(-0.187 * ratio) + 3.0)

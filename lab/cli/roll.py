@@ -1,0 +1,64 @@
+"""The command on roll: roll-damping."""
+
+from pathlib import Path
+
+import click
+
+from lab.cli.options import FilePath, check_files, json_option, out_option, tell, tell_json
+
+LENGTH = click.FloatRange(0, 1e3, min_open=True)
+SHARE = click.FloatRange(0, 1, min_open=True)
+SECONDS = click.FloatRange(0, 1e3, min_open=True)
+
+
+@click.command("roll-damping")
+@click.argument("file", type=FilePath(path_type=Path, dir_okay=False), required=False)
+@click.option("--length", type=LENGTH, metavar="M", help="Between perpendiculars; without FILE.")
+@click.option("--breadth", type=LENGTH, metavar="M", help="In the waterline; without FILE.")
+@click.option("--draught", type=LENGTH, metavar="M", help="Even.")
+@click.option("--block", type=SHARE, help="Block coefficient; without FILE.")
+@click.option("--midship", type=SHARE, help="Midship coefficient; without FILE.")
+@click.option("--kg", type=LENGTH, metavar="M", help="Centre of gravity above the keel line.")
+@click.option("--gm", type=LENGTH, metavar="M", help="Metacentric height; without FILE.")
+@click.option("--period", type=SECONDS, metavar="S", help="Natural period of roll.")
+@click.option("--gyradius", type=LENGTH, metavar="M", help="Gyradius in roll with added mass, in place of --period.")
+@click.option("--keels", type=(LENGTH, LENGTH), metavar="BREADTH LENGTH", help="Of each of two bilge keels, m.")
+@click.option("--radius", type=LENGTH, metavar="M", help="Of the bilges.  [default: by the midship coefficient]")
+@click.option(
+    "--amplitude", type=click.FloatRange(0, 40, min_open=True), multiple=True, metavar="DEG", help="Repeat for more."
+)
+@click.option(
+    "--density", type=click.FloatRange(500, 2000), default=1025.0, show_default=True, help="Of the water, kg/m3."
+)
+@click.option("--sea", type=(LENGTH, SECONDS), metavar="HS TP", help="Roll in this JONSWAP sea from abeam, m and s.")
+@click.option("--peakedness", type=click.FloatRange(1, 7), default=3.3, show_default=True, help="Of the sea.")
+@click.option(
+    "--hours", type=click.FloatRange(0, 1e3, min_open=True), default=3.0, show_default=True, help="In the sea."
+)
+@out_option("for tables and figures", "renders/roll-damping/NAME")
+@json_option
+def roll_damping(file: Path | None, amplitude: tuple, out: Path | None, as_json: bool, **asked) -> None:
+    """Roll damping of a ship without speed by Ikeda's components, with bilge keels.
+
+    FILE holds the lines of her hull, as for `cargolab hull`; without it eddies and waves are by formulas for cargo
+    ships. Two of --period, --gm and --gyradius say how she rolls, one of them with FILE.
+
+    \b
+    cargolab roll-damping presets/ship/s175.csv --draught 9.5 --kg 9.52 --period 20 --keels 0.4 43.75
+    cargolab roll-damping presets/ship/s175.csv --draught 9.5 --kg 9.52 --period 20 --sea 4 12
+    cargolab roll-damping --length 175 --breadth 25.4 --draught 9.5 --block 0.58 --midship 0.95 --kg 9.48 \\
+        --gm 1 --period 20 --keels 0.4 43.75
+    """
+    check_files(file)
+    from lab.naval.rolling.damping import Asked
+    from lab.naval.tables import objects
+    from lab.report.rolling.damping import examine
+
+    whole = Asked(file=file, **asked, **({"amplitudes": amplitude} if amplitude else {}))
+    folder = out or Path("renders/roll-damping") / (file.stem if file else "particulars")
+    text, tables, numbers = examine(whole, folder)
+    if as_json:
+        tell_json({"folder": str(folder), **numbers, **{name: objects(table) for name, table in tables.items()}})
+        return
+    tell(text)
+    click.echo(folder)
