@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from lab.base.errors import LabError
 from lab.cli.options import FilePath, check_files, json_option, out_option, tell, tell_json
 
 LENGTH = click.FloatRange(0, 1e3, min_open=True)
@@ -35,10 +36,18 @@ SECONDS = click.FloatRange(0, 1e3, min_open=True)
 @click.option(
     "--hours", type=click.FloatRange(0, 1e3, min_open=True), default=3.0, show_default=True, help="In the sea."
 )
+@click.option(
+    "--decay",
+    type=FilePath(path_type=Path, dir_okay=False),
+    metavar="CSV",
+    help="The record of a decay test, columns time s and roll deg or roll rad, in place of all above.",
+)
 @out_option("for tables and figures", "renders/roll-damping/NAME")
 @json_option
-def roll_damping(file: Path | None, amplitude: tuple, out: Path | None, as_json: bool, **asked) -> None:
-    """Roll damping of a ship without speed by Ikeda's components, with bilge keels.
+def roll_damping(
+    file: Path | None, amplitude: tuple, decay: Path | None, out: Path | None, as_json: bool, **asked
+) -> None:
+    """Roll damping of a ship without speed by Ikeda's components with bilge keels, or from a decay test.
 
     FILE holds the lines of her hull, as for `cargolab hull`; without it eddies and waves are by formulas for cargo
     ships. Two of --period, --gm and --gyradius say how she rolls, one of them with FILE.
@@ -48,17 +57,37 @@ def roll_damping(file: Path | None, amplitude: tuple, out: Path | None, as_json:
     cargolab roll-damping presets/ship/s175.csv --draught 9.5 --kg 9.52 --period 20 --sea 4 12
     cargolab roll-damping --length 175 --breadth 25.4 --draught 9.5 --block 0.58 --midship 0.95 --kg 9.48 \\
         --gm 1 --period 20 --keels 0.4 43.75
+    cargolab roll-damping --decay decay.csv
     """
-    check_files(file)
-    from lab.naval.rolling.damping import Asked
+    check_files(file, decay)
     from lab.naval.tables import objects
-    from lab.report.rolling.damping import examine
 
-    whole = Asked(file=file, **asked, **({"amplitudes": amplitude} if amplitude else {}))
-    folder = out or Path("renders/roll-damping") / (file.stem if file else "particulars")
-    text, tables, numbers = examine(whole, folder)
+    name = next((one.stem for one in (decay, file) if one), "particulars")
+    folder = out or Path("renders/roll-damping") / name
+    if decay:
+        if given := next((key for key, value in (("FILE", file), *asked.items()) if _said(key, value)), None):
+            raise LabError(f"--decay: tells the damping by itself; leave out {_option(given)}.")
+        from lab.report.rolling.decay import examine as of_decay
+
+        text, tables, numbers = of_decay(decay, folder)
+    else:
+        from lab.naval.rolling.damping import Asked
+        from lab.report.rolling.damping import examine
+
+        text, tables, numbers = examine(
+            Asked(file=file, **asked, **({"amplitudes": amplitude} if amplitude else {})), folder
+        )
     if as_json:
         tell_json({"folder": str(folder), **numbers, **{name: objects(table) for name, table in tables.items()}})
         return
     tell(text)
     click.echo(folder)
+
+
+def _said(key: str, value: object) -> bool:
+    """Whether an option is given that has nothing by itself."""
+    return value is not None and key not in ("density", "peakedness", "hours")
+
+
+def _option(key: str) -> str:
+    return key if key.isupper() else f"--{key}"
