@@ -13,7 +13,7 @@ from lab.cli.options import plugins_option
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import cargoes, outline, schema
 from lab.cli.presets import outline, schema
-from lab.cli.roll import roll_damping
+from lab.cli.roll import extremes, roll_damping
 from lab.cli.runs import bed, explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
 from lab.cli.sweeps import calibrate, sweep
@@ -50,6 +50,7 @@ for command in (
     doctor,
     explain,
     export,
+    extremes,
     flood,
     gallery,
     hull,

@@ -1,4 +1,4 @@
-"""The command on roll: roll-damping."""
+"""The commands on roll: roll-damping and extremes."""
 
 from pathlib import Path
 
@@ -79,6 +79,39 @@ def roll_damping(
         )
     if as_json:
         tell_json({"folder": str(folder), **numbers, **{name: objects(table) for name, table in tables.items()}})
+        return
+    tell(text)
+    click.echo(folder)
+
+
+@click.command()
+@click.argument("records", type=FilePath(path_type=Path), nargs=-1, required=True)
+@click.option("--hours", type=click.FloatRange(0, 1e5, min_open=True), default=3.0, show_default=True)
+@click.option(
+    "--block",
+    type=click.FloatRange(0, min_open=True),
+    metavar="S",
+    help="Length of the blocks whose largest rolls are taken.  [default: that of the shortest record]",
+)
+@out_option("for table and figure", "renders/extremes/NAME")
+@json_option
+def extremes(records: tuple[Path, ...], hours: float, block: float | None, out: Path | None, as_json: bool) -> None:
+    """The largest roll in some hours, from RECORDS of it, by Gumbel and by Weibull, with intervals.
+
+    RECORDS are folders of runs of a ship in random seas, each with a seed of its own, or tables (CSV) of time s and
+    roll deg or roll rad. Where they are too few or too short it says so and tells nothing.
+
+    \b
+    cargolab extremes renders/seed-*
+    cargolab extremes roll.csv --block 600
+    """
+    from lab.naval.tables import objects
+    from lab.report.rolling.extremes import examine
+
+    folder = out or Path("renders/extremes") / records[0].stem
+    text, tables = examine(records, hours, block, folder)
+    if as_json:
+        tell_json({"folder": str(folder), **{name: objects(table) for name, table in tables.items()}})
         return
     tell(text)
     click.echo(folder)
