@@ -7,6 +7,7 @@ from math import inf, pi, sqrt
 import numpy as np
 
 from lab.assembly.hull_tables import hull_table_of, whole_form
+from lab.assembly.roll_damping import make_damping
 from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
 from lab.preset.sections import sea as seas
@@ -18,7 +19,7 @@ from solvers.ship.body import NOTHING, Body, bolted
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.linear import impedance, inertia_for_roll, require_damped
 from solvers.ship.loads import Floating, floating_in_waves
-from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, remembered, start
+from solvers.ship.motion import Radiation, Rig, Ship, frozen_at, remembered, start
 from solvers.ship.openings import immersion_angle
 from solvers.ship.potential.memory import fit_memory
 from solvers.ship.potential.radiation import Hydrodynamics
@@ -100,7 +101,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         one = table.at([2.0 * pi / given.roll_period])
         ship = replace(ship, body=inertia_for_roll(ship, section, water, heave, one, roll))
     frequency, inertia = natural_roll(ship, heave, table, roll)
-    ship = replace(ship, damping=_damping(given, frequency, inertia))
+    ship = replace(ship, damping=make_damping(given, section, water, frequency, inertia))
     if given.radiation == "memory":
         require_damped(ship, start(ship, heave, roll))
     limits = (-given.capsize, given.capsize) if given.capsize else (-inf, inf)
@@ -259,13 +260,6 @@ def natural_roll(ship: Ship, heave: float, table, roll: float = 0.0) -> tuple[fl
         spring = whole + at**2 * own
         frequency = sqrt(max(spring, 1e-9) / own)
     return frequency, float(own)
-
-
-def _damping(given: ships.Ship, frequency: float, inertia: float) -> RollDamping:
-    """Viscous damping of a ship with a natural frequency of roll (rad/s) and an inertia (kg m)."""
-    if given.linear_damping is not None:
-        return RollDamping(given.linear_damping, given.quadratic_damping * inertia)
-    return RollDamping(2.0 * given.damping * frequency * inertia, given.quadratic_damping * inertia)
 
 
 def flooding_angles(given: ships.Ship, vessel: Vessel) -> dict[str, float | None]:

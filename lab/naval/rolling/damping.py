@@ -11,13 +11,12 @@ from lab.naval.hull import Hull, read_hull
 from lab.naval.tables import Table
 from solvers.machine.errors import Unavailable
 from solvers.ship.damping import components as parts
-from solvers.ship.damping.components import NAMES, Particulars, Slice
+from solvers.ship.damping.components import FITTED, NAMES, Particulars, Slice
 from solvers.ship.damping.keels import Keels
 from solvers.ship.potential.strips import abeam, strips
 from solvers.ship.water import Water
 
 NEEDED = "length", "breadth", "draught", "block", "midship"
-FITTED = np.radians(np.arange(2.5, 26.0, 2.5))  # amplitudes through which B₁ and B₂ are laid
 DRY = 1e-3  # of the draught and the breadth: a smaller section counts as dry
 
 

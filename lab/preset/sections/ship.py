@@ -42,6 +42,14 @@ class Hatch:
 
 
 @dataclass(frozen=True)
+class BilgeKeels:
+    """A pair of bilge keels in the middle of the bilges."""
+
+    breadth: Annotated[Length, Doc("Breadth of each keel.")]
+    length: Annotated[Length, Doc("Length of each keel along the ship.")]
+
+
+@dataclass(frozen=True)
 class Ship:
     """The hull's section and how the ship floats with her cargo aboard; the tank of the preset is her hold.
 
@@ -119,6 +127,13 @@ class Ship:
         Doc("Linear roll damping, moment over rate per metre of length, in place of `damping`."),
     ] = None
     quadratic_damping: Annotated[float, Interval(ge=0), Doc("Quadratic roll damping b, per rad.")] = 0.0
+    viscous_damping: Annotated[
+        Literal["given", "ikeda"],
+        Doc(
+            "Whether viscous roll damping is given by the keys above, or computed by Ikeda's method from her sections "
+            "and `bilge_keels`."
+        ),
+    ] = "given"
     heel: Annotated[
         float,
         Unit("rad"),
@@ -149,6 +164,7 @@ class Ship:
     ] = None
     rig: Annotated[Rig, Doc("The rig that holds a model.")] = field(default_factory=Rig)
     hatch: Annotated[Hatch | None, Doc("A hatch in the deck of a box.")] = None
+    bilge_keels: Annotated[BilgeKeels | None, Doc('Bilge keels, for viscous_damping = "ikeda".')] = None
     openings: Annotated[Points, Doc("Points through which she floods once they are under water.")] = ()
     deck: Annotated[
         Annotated[float, Unit("m")] | None, Doc("Height of the deck's edge above the origin, for an `outline`.")

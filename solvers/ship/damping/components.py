@@ -23,6 +23,7 @@ NAMES = "friction", "eddies", "waves", "keel drag", "keel pressure"
 WAVES = NAMES.index("waves")
 LAMINAR = 0.787  # 4/(3π) × 1.328 × √(2π/3.22), of Kato's formula
 FULLEST = 0.9999  # of a Lewis section
+FITTED = np.radians(np.arange(2.5, 26.0, 2.5))  # amplitudes through which B₁ and B₂ are laid
 
 
 @dataclass(frozen=True)

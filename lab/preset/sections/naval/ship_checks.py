@@ -14,6 +14,7 @@ from solvers.ship.section import Section
 MOST_FLAT = 200.0  # largest ratio of breadth and draught, either way; the panels do not resolve flatter sections
 FARTHEST = 10.0  # times the hull's size: largest distance of a ship's points from the origin
 
+MOST_KEEL = 0.1  # of the hull's breadth
 NARROW = 0.98  # of the middle frequency: half the breadth of white noise is less
 
 NEEDS = {
@@ -43,6 +44,7 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: Tank) 
         raise LabError("ship.roll_period: is that of ship and cargo together; give a gyradius, or leave out bare.")
     if ship.linear_damping is not None and ship.damping:
         raise LabError("ship.linear_damping: give either damping or linear_damping, not both.")
+    _check_keels(ship)
     _check_whole(ship)
     _check_hatch(ship, box)
     try:
@@ -67,6 +69,26 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: Tank) 
     if waves.kind == "white-noise" and not waves.spread < NARROW * waves.frequency:
         most = show(NARROW * waves.frequency, "rad/s")
         raise LabError(f"waves.spread: must be below {most}, so that the band of white noise stays above zero.")
+
+
+def _check_keels(ship: Ship) -> None:
+    """Raise LabError for bilge keels that nothing asks for or that no ship has, and for damping that is told twice."""
+    keels = ship.bilge_keels
+    if ship.viscous_damping == "given":
+        if keels is not None:
+            raise LabError('ship.bilge_keels: are not used; set ship.viscous_damping = "ikeda", or leave them out.')
+        return
+    if ship.linear_damping is not None or ship.damping or ship.quadratic_damping:
+        raise LabError('ship.damping: is computed with viscous_damping = "ikeda"; leave all given damping out, or 0.')
+    if keels is None:
+        return
+    if ship.length is None:
+        raise LabError("ship.length: missing; the bilge keels have a length, so give the ship's too.")
+    if keels.length > ship.length:
+        raise LabError(f"ship.bilge_keels.length: more than the ship's {show(ship.length, 'm')}; make it shorter.")
+    most = MOST_KEEL * float(np.ptp(ship.corners[:, 0]))
+    if keels.breadth > most:
+        raise LabError(f"ship.bilge_keels.breadth: at most {show(most, 'm')}, {MOST_KEEL:g} of the hull's breadth.")
 
 
 def _check_hold_length(ship: Ship | None, length: float | None) -> None:
