@@ -98,7 +98,7 @@ def _faults_of_water(preset, key_of_space: str) -> Iterator[tuple[str, str]]:
     water, tank = preset.water, preset.tank
     if not tank.along or tank.turned:
         yield "water", f"water in space fills a tank that is drawn out; give tank.along in place of {key_of_space}"
-    elif tank.along < (least := LEAST_LONG * preset.liquid.reach):
+    elif preset.pools and tank.along < (least := LEAST_LONG * preset.liquid.reach):
         yield (
             "tank.along",
             f"must be {show(least, 'm')} or more, two reaches of the water's kernel; or take finer water",
