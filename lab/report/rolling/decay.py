@@ -1,12 +1,13 @@
 """`cargolab roll-damping --decay`: period, extinction coefficients and damping of a ship that is let go heeled.
 
-The record's turning points are found as by the measure `decay` (`lab.measures.ship_decay`). h_n is half the width of
-the n-th swing, so that a heel at rest is not in it. Froude's (1872) extinction curve is
+The record's turning points are found as by the measure `decay` (`lab.measures.ship_decay`). The height h of a swing is
+half its width, so that a heel at rest is not in it. Froude's (1872) extinction curve is
 
-    δh = h_n − h_n+1 = p h + q h²  or  p h + q h² + r h³,  h = (h_n + h_n+1)/2, in deg
+    δh = p h + q h² + r h³
 
-by least squares. An error of one turning point is in two decrements, which the standard errors know of; intervals are
-of 95 % (Student). Of the motion φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ = 0 it is p = 2 tanh(π ζ/2√(1 − ζ²)) and to first order
+with δh the loss of height from a swing to the next and h the mean of both, in deg, by least squares, once without r and
+once with it. An error of one turning point is in two losses, which the standard errors know of; intervals are of 95 %
+(Student). Of the motion φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ = 0 it is p = 2 tanh(π ζ/2√(1 − ζ²)) and to first order
 q = 4 b/3 · π/180 (Himeno 1981); ζ and b themselves are fitted to all swings together, as that measure does.
 """
 

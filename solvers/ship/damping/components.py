@@ -1,7 +1,6 @@
 """Roll damping of a whole ship without speed, component by component (ITTC 7.5-02-07-04.5; Himeno 1981).
 
-    B44 = friction + eddies + waves + drag of bilge keels + their pressure on the hull (lift is nil without speed)
-
+The sum has friction, eddies, waves, the drag of bilge keels and their pressure on the hull; lift is nil without speed.
 Each is the linear damping that takes as much energy in a cycle of an amplitude as the component does. Friction is that
 of Kato (1957) with the growth of a turbulent boundary layer, 1 + 0.00814 (r² a² ω/ν)^0.386 (as Falzarano et al. 2015
 have it, after Hughes). Eddies are those of Ikeda, Himeno and Tanaka (1978), section by section; waves are given by

@@ -1,19 +1,21 @@
 """Roll damping of bilge keels without speed: their own drag, and the pressure that they cause on the hull.
 
 After Ikeda, Himeno and Tanaka (1976 to 1978), as in ITTC Recommended Procedure 7.5-02-07-04.5. The keels stand in the
-middle of the bilges, at a distance l from the axis of roll. The flow there is faster than l φ̇ by a factor f:
+middle of the bilges, at a distance l from the axis of roll. The flow there is faster than l φ̇ by a factor f. With the
+section's fullness σ, the keels' breadth b, the amplitude of roll a, and a pressure C⁺ before a keel and C⁻ behind it,
 
-    f = 1 + 0.3 exp(−160 (1 − σ)), σ the section's fullness
-    C_D = C⁺ − C⁻, C⁺ = 1.2, C⁻ = −22.5 b/(π l f a) − 1.2, b the keels' breadth and a the amplitude of roll
-    drag: moment ρ l³ b f² C_D φ̇|φ̇| of both keels, per metre of keel
-    hull: moment ½ ρ l² f² I φ̇|φ̇| of both sides, per metre of keel, I = ∫ C_p (lever of the normal) ds
+    f = 1 + 0.3 exp(−160 (1 − σ))
+    C⁻ = −22.5 b/(π l f a) − 1.2,  C⁺ = 1.2,  C_D = C⁺ − C⁻
+    M_N = ρ l³ b f² C_D φ̇|φ̇|,  M_H = ½ ρ l² f² I φ̇|φ̇|
 
-On the hull behind a keel the suction C⁻ acts along S₀ = 0.3 π l f a + 1.95 b, at most to the waterline on one side and
-the keel's line on the other. Before a keel C⁺ falls evenly to nil at these lines. The procedure's coefficients m₁ to m₈
-are these integrals along a section of two straight lines and a quarter circle; here they are exact, not rounded.
+M_N is the moment of the drag of both keels, M_H that of the pressure on both sides of the hull, each per metre of keel;
+I = ∫ C_p h ds, h the arm of the hull's normal. Behind a keel C⁻ acts along S₀ = 0.3 π l f a + 1.95 b, at most to the
+waterline on one side and to amidships on the other. Before a keel C⁺ falls evenly to nil at the same places. The
+procedure's coefficients m₁ to m₈ are these integrals along a section of two straight lines and a quarter circle; here
+they are exact, not rounded.
 
-Limits: model ships of usual form; keels of one breadth, at right angles to the bilge; the bare hull's
-eddies are not changed by them.
+Limits: model ships of usual form; keels of one breadth, at right angles to the bilge. The bare hull's eddies are not
+changed by them.
 """
 
 from dataclasses import dataclass
@@ -99,7 +101,7 @@ def _behind(midship: Midship, breadth: float, amplitude: float) -> float:
 
 
 def _front(midship: Midship) -> float:
-    """∫ (lever) (C_p/C⁺) ds (m²) before both keels, C_p falling evenly from a keel to the waterline and keel line.
+    """∫ (lever) (C_p/C⁺) ds (m²) before both keels, C_p falling evenly from a keel to the waterline and amidships.
 
     Along the bilge u is the angle from its middle, and S, C are sine and cosine of π/4 + u.
     """

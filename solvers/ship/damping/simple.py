@@ -2,11 +2,11 @@
 
 Polynomials fitted to Ikeda's method for a series of hulls made from one cargo ship, of which length, breadth, draught
 and fullness were changed. Printed again in the book of 2011 (Springer, Fluid Mechanics and Its Applications 97); the
-coefficients here are those of the authors' program of July 2009. All is without speed, in the shape
+coefficients here are those of the authors' program of July 2009. All is without speed, with the breadth B in
 
-    B̂ = B/(ρ ∇ B²) √(B/2g) (the B on the right is the breadth),  ω̂ = ω √(B/2g)
+    B̂ = B44/(ρ ∇ B²) √(B/2g),  ω̂ = ω √(B/2g)
 
-Limits, of the authors: 2.5 ≤ B/d ≤ 4.5, 0.5 ≤ C_b ≤ 0.85, 0.9 ≤ C_m ≤ 0.99, −1.5 ≤ OG/d ≤ 0.2, ω̂ ≤ 1, keels
+Limits: those of the authors, 2.5 ≤ B/d ≤ 4.5, 0.5 ≤ C_b ≤ 0.85, 0.9 ≤ C_m ≤ 0.99, −1.5 ≤ OG/d ≤ 0.2, ω̂ ≤ 1, keels
 0.01 ≤ b/B ≤ 0.06 and 0.05 ≤ l/L ≤ 0.4. Beyond, wave damping above all is wrong (Alexandersson, Mao & Ringsberg 2021).
 """
 
