@@ -7,7 +7,7 @@ import numpy as np
 from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.schema import Preset
-from solvers.ship.linear import impedance
+from solvers.ship.linear import ROLL, impedance
 from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.potential.sloshing import SloshingLiquid
 
@@ -24,10 +24,11 @@ def table_in_calm(preset: Preset) -> Hydrodynamics:
     return hull_table(preset.ship, preset.sea, preset.run.gravity)
 
 
-def linear_motion(preset: Preset, omega: np.ndarray) -> np.ndarray:
+def linear_motion(preset: Preset, omega: np.ndarray, more: float = 0.0) -> np.ndarray:
     """Complex amplitudes (n, 3) of sway, heave (m) and roll (rad) per metre of wave amplitude.
 
     At frequencies (n,) rad/s, of the ship's axis. Water in rectangular tanks is a `SloshingLiquid`, without damping.
+    `more` (N s): roll damping beside the ship's linear one, per metre of her.
     """
     vessel = vessels(preset)[0]
     ship, given = vessel.ship, preset.ship
@@ -43,6 +44,7 @@ def linear_motion(preset: Preset, omega: np.ndarray) -> np.ndarray:
         liquid = SloshingLiquid(float(high[0] - low[0]), pool.depth, tuple(place), density, preset.run.gravity)
         loose = -(omega[:, None, None] ** 2) * liquid.added_mass(omega) + liquid.stiffness()
         whole = whole + loose - _solid(liquid, omega)
+    whole[:, ROLL, ROLL] -= 1j * omega * more
     free = np.flatnonzero(ship.free)
     found = np.zeros((len(omega), 3), complex)
     found[:, free] = np.linalg.solve(whole[:, free[:, None], free], table.excitation[:, free, None])[..., 0]

@@ -9,6 +9,7 @@ from lab.assembly.ship import MEMORY_ORDER
 from lab.base.errors import LabError
 from lab.base.files import write_text
 from lab.naval.linear_water import by, linear_motion, peaks, table_in_calm
+from lab.naval.rolling.preset_sea import has_spectrum, in_her_sea, told
 from lab.naval.tables import write
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
@@ -65,6 +66,7 @@ def compare(loaded: LoadedPreset, out: Path | None) -> tuple[str, Path]:
         fitted = ", ".join(f"{mode} {100.0 * miss:.2g} %" for mode, miss in _fit(preset, table).items())
         lines += [f"{KINDS[kind]}: roll peaks at {', '.join(found) or 'none'}"]
         lines += [f"  Haskind's relation within {haskind}", f"  memory's rms error {fitted}"]
+        lines += [f"  {told(in_her_sea(preset, kind))}"] if has_spectrum(preset) else []
         rows.append(f"| {KINDS[kind]} | {'; '.join(found)} | {haskind} | {fitted} |")
     write({f"hydrodynamics-{kind}": _columns(table) for kind, table in tables.items()}, folder)
     write({"responses": _responses(omega, moves)}, folder)

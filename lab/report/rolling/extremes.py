@@ -120,8 +120,9 @@ def examine(paths: Sequence[Path], hours: float, block: float | None, folder: Pa
     if found.gumbel:
         _draw(folder / "extremes.png", found, hours)
     largest = max(float(np.degrees(np.abs(one.roll).max())) for one in records)
+    hours_of_all = sum(one.length for one in records) / HOUR
     lines = [
-        f"{len(records)} records, {sum(one.length for one in records) / HOUR:.3g} h; largest roll {largest:.3g} deg; "
+        f"records: {len(records)}, {hours_of_all:.3g} h; largest roll {largest:.3g} deg; "
         f"blocks of {found.block:.4g} s, {found.rolls:.3g} rolls each",
         f"largest roll in {hours:g} h, with intervals of 95 %:",
     ]

@@ -95,14 +95,20 @@ def rayleigh_largest(deviation: float, count: float) -> tuple[float, float, floa
 
 def random_roll(ship: Afloat, density: Callable, linear: float, quadratic: float) -> Answer:
     """Her roll in a sea of spectrum `density` (ω to m² s), with B₁ (N m s) and B₂ (N m s²). Raises Unavailable."""
+    return linearised(ship.response, ship.table.frequency, density, linear, quadratic)
+
+
+def linearised(
+    response: Callable[[float], np.ndarray], omega: np.ndarray, density: Callable, linear: float, quadratic: float
+) -> Answer:
+    """`random_roll` of a ship whose `response` to a damping has her motions (n, 3) per metre of waves at ω (n,)."""
     from scipy.optimize import brentq  # slow to import
 
-    omega = ship.table.frequency
     waves = density(omega)
 
     def answered(speed: float) -> Answer:
         damping = linear + LINEARISED * speed * quadratic
-        ratio = np.abs(ship.response(damping)[:, ROLL])
+        ratio = np.abs(response(damping)[:, ROLL])
         roll = ratio**2 * waves
         moments = (float(np.trapezoid(omega**k * roll, omega)) for k in (0, 2))
         return Answer(omega, ratio, waves, roll, damping, *moments)

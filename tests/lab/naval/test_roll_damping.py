@@ -12,6 +12,8 @@ from lab.base.errors import LabError
 from lab.cli import main
 from lab.naval.rolling import sea
 from lab.naval.rolling.damping import Asked, compute, prepare
+from lab.naval.rolling.preset_sea import in_her_sea
+from lab.preset.find import load
 from solvers.ship.damping.components import NAMES
 
 LINES = Path("presets/ship/s175.csv")
@@ -75,6 +77,25 @@ def test_long_waves_roll_her_by_their_slope(barge):
     slow = ship.table.frequency[0]
     quasistatic = slow**2 / 9.81 / (1.0 - (slow / found.rolling.frequency) ** 2)
     assert size == pytest.approx(quasistatic, rel=0.03)
+
+
+def test_a_presets_ship_rolls_in_her_sea_with_linearised_damping():
+    """With linear damping alone roll is as the height of the sea; quadratic damping takes more of a higher one.
+
+    The run of ship/barge-empty in 20 mm at 5 rad/s has a significant roll of 3.90 ± 0.47 deg.
+    """
+    sea_of = {"waves.kind": "jonswap", "waves.amplitude": False, "run.duration": "10 s"}
+    preset = {
+        (height, quadratic): load(
+            "ship/barge-empty", sea_of | {"waves.height": f"{height} mm", "ship.quadratic_damping": quadratic}
+        ).resolved
+        for height in (10, 20)
+        for quadratic in (0.0, 0.3)
+    }
+    found = {key: in_her_sea(one, "section").significant for key, one in preset.items()}
+    assert found[20, 0.0] == pytest.approx(2.0 * found[10, 0.0], rel=1e-6)
+    assert found[20, 0.3] < 1.99 * found[10, 0.3] and found[20, 0.3] < found[20, 0.0]
+    assert np.degrees(found[20, 0.3]) == pytest.approx(3.90, abs=2.0 * 0.47)
 
 
 @pytest.mark.parametrize(
