@@ -120,6 +120,13 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
 )
 @click.option(
     "--units", type=click.Choice(["metric", "imperial"]), default="metric", help="Of the tables of a ship file."
+@click.option("--limiting-kg", is_flag=True, help="The largest KG that passes each criterion, at these draughts.")
+@click.option(
+    "--kg-trim",
+    type=click.FloatRange(-1e3, 1e3),
+    multiple=True,
+    metavar="M",
+    help="Limiting KG with this trim by the stern, m; repeat for more.  [default: --trim]",
 )
 @out_option("for tables and figure", "renders/hull/NAME")
 @json_option
@@ -141,6 +148,7 @@ def hull(file: Path, units: str, out: Path | None, as_json: bool, **asked) -> No
     cargolab hull wigley.csv
     cargolab hull wigley.csv --step 0.25
     cargolab hull ship.csv --draught 8.5 --displacement 32000 --trim 0.6
+    cargolab hull ship.csv --limiting-kg --kg-trim 0 --kg-trim 1.5
     cargolab hull barge.stl --scale 0.001 --weights weights.csv
     cargolab hull ship.csv --weights departure.csv --points openings.csv --holds holds.csv --grain grain.csv \\
         --wind 1500 10

@@ -19,10 +19,12 @@ from lab.naval.surfaces.axes import Axes
 from lab.naval.surfaces.offsets import write_offsets
 from lab.naval.surfaces.selfcheck import self_check
 from lab.naval.weights import Weights, read_weights
+from lab.report.naval import limiting
 from lab.report.stability import HEEL, SIGNS, aligned, columns, save_axes
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.form import Form
 from solvers.ship.naval.holds import Hold
+from solvers.ship.naval.whole_hull.limits import Demands
 from solvers.ship.water import Water
 
 WITH_WEIGHTS = "points", "grain", "wind"
@@ -65,6 +67,8 @@ class Asked:
     displacement: tuple[float, ...] = ()
     trim: float = 0.0
     step: float | None = None
+    limiting_kg: bool = False
+    kg_trim: tuple[float, ...] = ()
 
 
 def read(path: Path, asked: Asked) -> Hull:
@@ -107,10 +111,14 @@ def examine(path: Path, folder: Path, asked: Asked) -> tuple[str, dict[str, tabl
         lines += columns(written["hydrostatics"], BRIEFLY)
         holds = read_holds(asked.holds, form) if asked.holds else {}
         written |= {f"hold-{name}": tables.hold(hold) for name, hold in holds.items()}
-        if asked.weights:
-            found, tables_of = _judged(form, water, asked, holds, folder, path.name)
+        loaded = _loaded(form, water, asked, holds) if asked.weights else None
+        if loaded:
+            found, tables_of = _judged(loaded, asked, folder, path.name)
             lines += ["", *found]
             written |= tables_of
+        if asked.limiting_kg:
+            found, written[limiting.NAME] = _limiting(ship, draughts, asked, loaded, folder)
+            lines += ["", *found]
         if asked.at is not None:
             lines += ["", outline_at(form, asked.at)]
     except Unavailable as error:
@@ -142,14 +150,28 @@ def _spare(path: Path, asked: Asked, written: list[Path]) -> None:
             raise LabError(f"--out: {one} was read and would be written over; choose another folder.")
 
 
-def _judged(form: Form, water: Water, asked: Asked, holds: dict[str, Hold], folder: Path, name: str):
-    """Lines and tables of a hull that carries weights; her figure is saved."""
-    total, given = read_weights(asked.weights)
+def _limiting(ship: Hull, draughts: list[float], asked: Asked, loaded: Loaded | None, folder: Path):
+    """Lines and the table of limiting KG; its figure is saved."""
+    demands = limiting.demands_of(loaded) if loaded else Demands(lwl=asked.lwl)
+    rows = []
+    for trim in asked.kg_trim or (asked.trim,):
+        rows += limiting.judged(ship.form, ship.water, draughts, trim, demands)
+    limiting.write_figure(folder, ship.name, rows, loaded)
+    return limiting.shown(rows) + ([limiting.as_loaded(loaded)] if loaded else []), limiting.table(rows)
+
+
+def _loaded(form: Form, water: Water, asked: Asked, holds: dict[str, Hold]) -> Loaded:
+    """The hull with the weights, points, grain and wind of the files asked for."""
     points = read_points(asked.points) if asked.points else {}
     grain = tuple(read_stowed(asked.grain, holds)) if asked.grain else ()
     wind = Wind(*asked.wind, asked.keels, asked.sharp) if asked.wind else None
-    ship = Loaded(form, water, total, points, grain, wind, asked.lwl)
-    rows = sheet.rows(ship)
+    return Loaded(form, water, read_weights(asked.weights)[0], points, grain, wind, asked.lwl)
+
+
+def _judged(ship: Loaded, asked: Asked, folder: Path, name: str):
+    """Lines and tables of a hull that carries weights; her figure is saved."""
+    total, given = read_weights(asked.weights)
+    grain, rows = ship.grain, sheet.rows(ship)
     save_axes(folder / "righting-levers.png", name, lambda axes: draw_levers(axes, ship))
     written = {
         "weights": _weights(total, given),

@@ -1,0 +1,1 @@
+"""Reports on a whole hull: limiting KG and longitudinal strength."""
