@@ -18,16 +18,17 @@ from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.surfaces.axes import Axes
 from lab.naval.surfaces.offsets import write_offsets
 from lab.naval.surfaces.selfcheck import self_check
-from lab.naval.weights import Weights, read_weights
-from lab.report.naval import limiting
+from lab.naval.weights import Weights, extents, read_weights
+from lab.report.naval import limiting, strength
 from lab.report.stability import HEEL, SIGNS, aligned, columns, save_axes
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.form import Form
 from solvers.ship.naval.holds import Hold
 from solvers.ship.naval.whole_hull.limits import Demands
+from solvers.ship.naval.whole_hull.strength import still_water
 from solvers.ship.water import Water
 
-WITH_WEIGHTS = "points", "grain", "wind"
+WITH_WEIGHTS = "points", "grain", "wind", "strength"
 BRIEFLY = (  # what is shown
     *("T m", "displacement t", "LCB m", "KB m", "KM m", "KML m"),
     *("TPC t/cm", "MCT t m/cm", "LCF m", "wetted m2", "Cb"),
@@ -69,6 +70,7 @@ class Asked:
     step: float | None = None
     limiting_kg: bool = False
     kg_trim: tuple[float, ...] = ()
+    strength: bool = False
 
 
 def read(path: Path, asked: Asked) -> Hull:
@@ -178,12 +180,17 @@ def _judged(ship: Loaded, asked: Asked, folder: Path, name: str):
         "criteria": tables.criteria(rows),
         "righting-levers": tables.levers(ship),
     }
+    beam = still_water(ship.form, ship.water, extents(asked.weights, given)) if asked.strength else None
+    if beam:
+        strength.write_figure(folder, name, beam)
+        written[strength.NAME] = strength.table(ship.form, beam)
     if grain:
         written["grain"] = _stowed(grain, ship)
     told = facts(ship)
     width = max(len(name) for name, _ in told)
     lines = [f"  {name:<{width}}  {text}" for name, text in told]
-    return [*lines, "", *aligned(rows), *_unjudged(ship)], written
+    told_of = ["", *strength.shown(beam)] if beam else []
+    return [*lines, "", *aligned(rows), *_unjudged(ship), *told_of], written
 
 
 def facts(ship: Loaded) -> list[tuple[str, str]]:
