@@ -97,6 +97,8 @@ def examine(path: Path, folder: Path, asked: Asked) -> tuple[str, dict[str, tabl
     for name in WITH_WEIGHTS:
         if getattr(asked, name) and not asked.weights:
             raise LabError(f"--{name}: needs --weights, by which she floats; give both.")
+    if asked.kg_trim and not asked.limiting_kg:
+        raise LabError("--kg-trim: is of --limiting-kg; give both.")
     ship = read(path, asked)
     form, mesh, water = ship.form, ship.mesh, ship.water
     draughts = _draughts(ship, asked)
