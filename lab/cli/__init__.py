@@ -12,7 +12,6 @@ from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.options import plugins_option
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import cargoes, outline, schema
-from lab.cli.presets import outline, schema
 from lab.cli.roll import extremes, roll_damping
 from lab.cli.runs import bed, explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify

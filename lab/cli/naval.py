@@ -53,8 +53,6 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
 
 @click.command()
 @click.argument("file", type=FilePath(path_type=Path))
-@click.option("--weights", type=TABLE, metavar="CSV", help="Weights that she carries: name, mass, lcg, tcg, vcg, fsm.")
-@click.argument("file", type=TABLE)
 @click.option("--weights", type=TABLE, metavar="CSV", help="Weights: name, mass, lcg, tcg, vcg, fsm, aft, forward.")
 @click.option("--points", type=TABLE, metavar="CSV", help="Openings and the deck's edge: name, kind, x, y, z.")
 @click.option("--holds", type=TABLE, metavar="CSV", help="Holds: hold, aft, forward, z, half_breadth.")
@@ -121,8 +119,15 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
     "--at", type=float, metavar="X", help="Also print the section at X (m) as the outline of a preset's ship."
 )
 @click.option(
-    "--units", type=click.Choice(["metric", "imperial"]), default="metric", help="Of the tables of a ship file."
-    "--strength", is_flag=True, help="Shear force and bending moment along her in still water; with --weights."
+    "--units",
+    type=click.Choice(["metric", "imperial"]),
+    default="metric",
+    help="Of the tables of a ship file.",
+)
+@click.option(
+    "--strength",
+    is_flag=True,
+    help="Shear force and bending moment along her in still water; with --weights.",
 )
 @click.option("--limiting-kg", is_flag=True, help="The largest KG that passes each criterion, at these draughts.")
 @click.option(
