@@ -12,11 +12,10 @@ from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.options import plugins_option
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import cargoes, outline, schema
-from lab.cli.roll import extremes, roll_damping
 from lab.cli.runs import bed, explain, resume, run
+from lab.cli.seaway import extremes, roll_damping, voyage
 from lab.cli.studies import gallery, list_presets, reproduce, verify
 from lab.cli.sweeps import calibrate, sweep
-from lab.cli.voyage import voyage
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -59,7 +59,7 @@ TABLE = FilePath(path_type=Path, dir_okay=False)
 @click.option("--grain", type=TABLE, metavar="CSV", help="Grain: name, filling, stowage, and moment or level.")
 @click.option(
     "--wind",
-    type=(click.FloatRange(0, 1e6), click.FloatRange(0, 1e3)),
+    type=(click.FloatRange(0, 5e4), click.FloatRange(0, 100)),
     metavar="AREA LEVER",
     help="Area exposed to wind (m2), and the height of its centre above half the draught (m).",
 )

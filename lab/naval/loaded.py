@@ -33,7 +33,7 @@ class Loaded:
     """A hull with weights, points that must stay dry (n, 3) m by kind, grain in her holds, and the wind on her.
 
     She trims freely. All that is asked of her is asked to the `side` that she lists to. `lwl` (m) is her length in the
-    waterline; without it that is as her stations show it.
+    waterline; without it that is as her stations show it. `openings` are the names of the points that are openings.
     """
 
     form: Form
@@ -43,6 +43,7 @@ class Loaded:
     grain: tuple[Stowed, ...] = ()
     wind: Wind | None = None
     lwl: float | None = None
+    openings: tuple[str, ...] = ()
 
     @cached_property
     def level(self) -> np.ndarray:
@@ -103,8 +104,21 @@ class Loaded:
         """The heel (rad) to her side at which an opening goes under; None without openings."""
         return self._under(self.points["opening"]) if "opening" in self.points else None
 
-    def _under(self, points: np.ndarray) -> float:
-        way = 1.0 if self.side == "port" else -1.0
+    @property
+    def flooded_by(self) -> str:
+        """The name of the opening that goes under first; "" without names, or where none does."""
+        if not self.openings or self.flooding is None or not np.isfinite(self.flooding):
+            return ""
+        angles = [self._under(point[None]) for point in self.points["opening"]]
+        return self.openings[int(np.argmin(angles))]
+
+    @cached_property
+    def flooding_to_the_other_side(self) -> float | None:
+        """The heel (rad) to her other side at which an opening goes under; None without openings."""
+        return self._under(self.points["opening"], -1.0) if "opening" in self.points else None
+
+    def _under(self, points: np.ndarray, turned: float = 1.0) -> float:
+        way = turned * (1.0 if self.side == "port" else -1.0)
         found = heel_at_immersion(self.form, self.weights.mass, self.water, points, way, self.weights.lcg)
         return np.inf if found is None else found
 

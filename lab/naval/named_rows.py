@@ -7,8 +7,10 @@ from pathlib import Path
 
 from lab.base.errors import LabError
 from lab.base.sheets import NONE, read_sheet
+from lab.preset.units import quoted
 
 MOST = 10_000  # rows
+SPARE = "", "remark", "remarks", "note", "notes", "comment"  # columns that are left unread
 UNIT = re.compile(r"\s*[\[(]\s*(?P<unit>[^\])]*?)\s*[\])]$")
 UNITS = {"mass": ("t",), "fsm": ("t m", "tm", "t*m"), "stowage": ("m3/t", "m³/t"), "moment": ("m4", "m⁴")}
 
@@ -25,6 +27,11 @@ def read_rows(path: Path, needed: Sequence[str], perhaps: Sequence[str], what: s
     if len(sheet.rows) < 2 or any(name not in names for name in needed):
         more = f" and perhaps {', '.join(perhaps)}" if perhaps else ""
         raise LabError(f"{path.name}: {what} has the columns {', '.join(needed)}{more}.")
+    if odd := next((cell for cell, name in zip(first, names, strict=True) if name not in (*known, *SPARE)), None):
+        raise LabError(
+            f"{path.name}: line {line}: unknown column {quoted(odd)}; {what} has {', '.join(known)}. Correct it or "
+            "remove it; a column remark may stay."
+        )
     if twice := next((name for name in known if names.count(name) > 1), None):
         raise LabError(f"{path.name}: line {line}: the column {twice} is there twice.")
     found = []

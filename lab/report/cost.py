@@ -109,7 +109,7 @@ def described(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     settling = f"and at most {_span(_settling(preset, scene))} to settle a new bed"
     return [
         *(
-            [(f"{what}-steps", f"{updates(scene, base):.3g}{', and those of settling' * bool(preset.grains)}")]
+            [(f"{what}-steps", f"{worlds * updates(scene, base):.3g}{', and those of settling' * bool(preset.grains)}")]
             * bool(count)
         ),
         *([("steps", f"{_steps(scene, preset.duration):.3g}")] if not preset.grains else []),
@@ -181,7 +181,7 @@ def _steps(scene, duration: float) -> float:
 
 def _stepping(duration: float, preset, scene) -> float:
     """Seconds of computation for the steps of grains or water over a duration (s)."""
-    rounds = -(-scene.worlds // min(scene.worlds, preset.run.threads or available_cores()))
+    rounds = -(-preset.run.repeats // _cores(preset))
     a_step = STEP
     if scene.grains:
         shapes = scene.grains.shapes
@@ -197,10 +197,11 @@ def _stepping(duration: float, preset, scene) -> float:
 def _floating(preset, simulation: Simulation) -> float:
     """Seconds of computation for the water's forces and for the ship with her cargo frozen."""
     states, _, waves = simulation.carrier.sizes
-    rounds = -(-len(simulation.scene.vessels) // simulation.threads)
+    rounds = -(-preset.run.repeats // _cores(preset))
     look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves
     looks = preset.duration / (float(simulation.carrier.every[0]) * simulation.dt)
-    return rounds * looks * look + preset.duration / step_of(simulation.scene.vessels[0]) * FROZEN
+    frozen = preset.run.repeats * preset.duration / step_of(simulation.scene.vessels[0]) * FROZEN
+    return rounds * looks * look + frozen
 
 
 def _span(seconds: float) -> str:

@@ -13,7 +13,7 @@ from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
 from lab.naval.hull import DEEPEST, GEOMETRY, Hull, read_hull
 from lab.naval.loaded import Loaded, Wind
-from lab.naval.points import read_points
+from lab.naval.points import check_near, names_of_openings, read_points
 from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.surfaces.axes import Axes
 from lab.naval.surfaces.offsets import write_offsets
@@ -167,9 +167,12 @@ def _limiting(ship: Hull, draughts: list[float], asked: Asked, loaded: Loaded | 
 def _loaded(form: Form, water: Water, asked: Asked, holds: dict[str, Hold]) -> Loaded:
     """The hull with the weights, points, grain and wind of the files asked for."""
     points = read_points(asked.points) if asked.points else {}
+    names = names_of_openings(asked.points) if asked.points else ()
+    if points:
+        check_near(points, form, asked.points)
     grain = tuple(read_stowed(asked.grain, holds)) if asked.grain else ()
     wind = Wind(*asked.wind, asked.keels, asked.sharp) if asked.wind else None
-    return Loaded(form, water, read_weights(asked.weights)[0], points, grain, wind, asked.lwl)
+    return Loaded(form, water, read_weights(asked.weights)[0], points, grain, wind, asked.lwl, names)
 
 
 def _judged(ship: Loaded, asked: Asked, folder: Path, name: str):
@@ -209,7 +212,7 @@ def facts(ship: Loaded) -> list[tuple[str, str]]:
         ("GM fluid", f"{ship.metacentric_height:.3f} m"),
         ("list", f"{_list(ship)}; judged to {ship.side}"),
         ("deck edge under", sheet.degrees(ship.deck_edge_angle, "not up to 90 deg")),
-        ("downflooding", _downflooding(ship.flooding)),
+        ("downflooding", _downflooding(ship)),
         ("levers vanish", sheet.vanishing(ship.levers)),
     ]
     if ship.grain:
@@ -218,8 +221,11 @@ def facts(ship: Loaded) -> list[tuple[str, str]]:
     return rows
 
 
-def _downflooding(angle: float | None) -> str:
-    return "no opening is given" if angle is None else sheet.degrees(angle, "not up to 90 deg")
+def _downflooding(ship: Loaded) -> str:
+    if ship.flooding is None:
+        return "no opening is given"
+    by = f", by {ship.flooded_by}" if ship.flooded_by else ""
+    return sheet.degrees(ship.flooding, "not up to 90 deg") + by
 
 
 def _list(ship: Loaded) -> str:
@@ -241,6 +247,12 @@ def _unjudged(ship: Loaded) -> list[str]:
         lines.append("The Grain Code was not judged: give --grain CSV.")
     if ship.flooding is None:
         lines.append("No opening limits her levers: give --points CSV.")
+    elif ship.flooding_to_the_other_side < ship.flooding:
+        angle = sheet.degrees(ship.flooding_to_the_other_side)
+        lines.append(
+            f"Heeled to the other side an opening floods at {angle}, sooner than to {ship.side}, to which she is "
+            "judged: judge that side too, with the openings mirrored."
+        )
     return ["", *lines] if lines else []
 
 

@@ -23,9 +23,7 @@ from solvers.motion import OF_TANK
 
 # The measures that answer the question of an experiment, the most important first; a run has only some of them.
 TELLING = (
-    "capsized_at",
-    "flooded_at",
-    "sunk_at",
+    *("capsized_at", "flooded_at", "sunk_at"),
     "entered_",
     "roll_amplitude",
     "frozen_amplitude",

@@ -36,8 +36,9 @@ def kind_of(run, worlds: int) -> str:
 
 
 def family_of(run) -> str:
-    """What scenes that take about as long to compile have in common: matters and axes."""
-    return f"{'+'.join(sorted(run.matters)) or 'nothing'} {run.scene.axes}{' quick' * compiling.quick()}"
+    """What scenes that take about as long to compile have in common: matters, axes, and whether they are a ship's."""
+    ship = " ship" * bool(run.scene.vessels)
+    return f"{'+'.join(sorted(run.matters)) or 'nothing'} {run.scene.axes}{ship}{' quick' * compiling.quick()}"
 
 
 def note(run, seconds: float) -> None:

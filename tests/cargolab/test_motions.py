@@ -114,6 +114,7 @@ def test_several_coordinates_go_by_one_function_innermost_first(mine, small):
     assert heave.curve(0.15) == pytest.approx(0.01, abs=1e-8) and heave.rests == (True, True)
 
 
+@pytest.mark.slow
 def test_a_class_like_the_labs_own_moves_the_tank_exactly(mine, small, tmp_path):
     preset = small.changed({**loaded(mine), "motion.push": {"acceleration": "0.5 m/s^2"}})
     recording = preset.run(tmp_path / "run", video=False, plots=False, quiet=True).recording
@@ -203,6 +204,7 @@ def test_motions_of_space_are_refused_in_the_plane(mine, small):
         small.changed({**loaded(mine), "motion.turning": {}})
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_bit_for_bit_and_not_without_its_plugin(mine, small, tmp_path):
     preset = small.changed({**loaded(mine), **MINE_TEN, "motion.tilt": False})
     whole = preset.run(tmp_path / "whole", video=False, plots=False, quiet=True).recording
@@ -219,6 +221,7 @@ def test_a_run_goes_on_bit_for_bit_and_not_without_its_plugin(mine, small, tmp_p
         from_table(table)
 
 
+@pytest.mark.slow
 def test_a_sweep_varies_its_parameter(mine, small, tmp_path):
     preset = small.changed({**loaded(mine), **MINE_TEN})
     sizes = {"motion.rocking.amplitude": "5 deg, 10 deg"}

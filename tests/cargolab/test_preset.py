@@ -98,3 +98,5 @@ def test_its_cost_grows_with_its_beds_and_its_duration(small):
     assert more.memory == pytest.approx(3.0 * one.memory, rel=0.01)
     assert more.steps - one.steps == pytest.approx(1.0 / one.step, rel=0.01)
     assert more.total > one.total > 0.0
+    few, many = (small.changed(run__repeats=n, run__threads=1).cost().seconds["of steps"] for n in (2, 8))
+    assert many > 2.0 * few  # on one core; to observe all beds costs the same

@@ -139,6 +139,7 @@ class _Maker:
             tuple(one.grain for one in cargo if one.grain is not None),
             self._wind(given.wind or self.keys.wind),
             self.keys.hull.lwl,
+            self._openings(),
             name,
             given.title,
             fixed,
@@ -182,6 +183,10 @@ class _Maker:
         for one in self.keys.openings.values():
             found.setdefault(one.kind, []).append(one.place)
         return {kind: np.array(places) for kind, places in found.items()}
+
+    def _openings(self) -> tuple[str, ...]:
+        """The names of the points that are openings, in their order."""
+        return tuple(name for name, one in self.keys.openings.items() if one.kind == "opening")
 
     def _wind(self, given: WindKeys | None) -> Wind | None:
         hull = self.keys.hull

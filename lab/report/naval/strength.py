@@ -50,7 +50,7 @@ def shown(beam: Beam) -> list[str]:
     return [*told, f"  {SIGN}"]
 
 
-def write_figure(folder: Path, name: str, beam: Beam) -> Path:
+def write_figure(folder: Path, name: str, beam: Beam, file: str = NAME) -> Path:
     """Weight, buoyancy and load above, shear force and bending moment below. Raises LabError where it cannot."""
     with matplotlib.rc_context(STYLE):
         figure, panels = canvas((6.4, 6.4), rows=3, sharex=True)
@@ -70,7 +70,7 @@ def write_figure(folder: Path, name: str, beam: Beam) -> Path:
         above.set_title(name, parse_math=False)
         figure.legend(loc=BELOW, ncols=2)
         try:
-            return save_figure(folder / f"{NAME}.png", figure)
+            return save_figure(folder / f"{file}.png", figure)
         except OSError as error:
             raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
 

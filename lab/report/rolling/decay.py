@@ -101,9 +101,9 @@ def _words(path: Path, whole: Decay, heights: np.ndarray, curves: dict, numbers:
     share, other = (half_width(numbers[name], freedom) for name in ("zeta error", "quadratic error 1/rad"))
     lines = [
         f"{path.name}: {len(heights)} swings of {heights[0]:.3g} to {heights[-1]:.3g} deg",
-        f"period {numbers['period s']:.4g} ± {numbers['period error s']:.2g} s (standard error)",
-        f"zeta {numbers['zeta']:.4f} ± {share:.2g} and b {numbers['quadratic 1/rad']:.4f} ± {other:.2g} 1/rad (95 %): "
-        "ship.damping and ship.quadratic_damping of a preset, waves included",
+        f"period {numbers['period s']:.4g} s (standard error {numbers['period error s']:.2g} s)",
+        f"zeta {numbers['zeta']:.4f}, b {numbers['quadratic 1/rad']:.4f} 1/rad, within {share:.2g} and {other:.2g} "
+        "(95 %), ship.damping and ship.quadratic_damping of a preset, waves included",
     ]
     for turn in _round(degrees):
         lines.append(f"  zeta at {turn:g} deg: {whole.line[0] + whole.line[1] * np.radians(turn):.4f}")
@@ -112,7 +112,7 @@ def _words(path: Path, whole: Decay, heights: np.ndarray, curves: dict, numbers:
             lines.append(f"Froude's curve {name}: cannot tell; too few swings.")
             continue
         each = zip(NAMES, curve.coefficients, curve.halves, UNITS, strict=False)
-        told = ", ".join(f"{one} {value:.4g} ± {half:.2g} {unit}".rstrip() for one, value, half, unit in each)
+        told = ", ".join(f"{one} {value:.4g} within {half:.2g} {unit}".rstrip() for one, value, half, unit in each)
         lines.append(f"Froude's curve {name}: {told} (95 %, n = {len(heights) - 1}; rms {curve.residual:.2g} deg)")
     return lines
 

@@ -1,6 +1,6 @@
 """`cargolab hull ship.toml`: the sheet of all loading conditions, tables, capacities and figures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 
@@ -14,10 +14,14 @@ from lab.naval.ship_file.ship import Condition, Ship, read_ship
 from lab.naval.surfaces.offsets import write_offsets
 from lab.naval.surfaces.selfcheck import self_check
 from lab.report.hull import BRIEFLY, Asked, between_offsets
+from lab.report.ship_file.further import Found, limits, strengths
 from lab.report.stability import SIGNS, save_axes
 from solvers.machine.errors import Unavailable
 
-ASKED_FOR = "draught", "displacement", "trim", "step"  # of the table of hydrostatics, also with a ship file
+ASKED_FOR = (  # also with a ship file
+    *("draught", "displacement", "trim", "step"),  # of the table of hydrostatics
+    *("limiting_kg", "kg_trim", "strength"),
+)
 HERE = {  # where in the file the command's other options are
     "density": "water.density",
     "weights": "weights",
@@ -44,7 +48,13 @@ def examine(path: Path, folder: Path, asked: Asked, units: str) -> tuple[str, di
     for name, one in ship.conditions.items():
         with source.told(f"conditions.{name}"):
             judged[name] = sheet.rows(one)
-    written = _of_hull(ship, asked) | sheets.all_of(ship, judged)
+    draughts = _draughts(ship, asked)
+    written = _of_hull(ship, asked, draughts) | sheets.all_of(ship, judged)
+    more: list[str] = []
+    if (asked.strength or asked.limiting_kg) and not ship.conditions:
+        raise LabError(f"{ship.name}: no condition is given; add [conditions.departure], by which she is loaded.")
+    for lines, of_these in _further(ship, asked, draughts, folder):
+        more, written = [*more, *lines], written | of_these
     side_by_side = sheets.attained(judged) if judged else None
     if units == "imperial":
         written = {name: imperial(table) for name, table in written.items()}
@@ -56,14 +66,29 @@ def examine(path: Path, folder: Path, asked: Asked, units: str) -> tuple[str, di
         save_axes(folder / f"{name}-righting-levers.png", title, lambda axes, one=one: draw_levers(axes, one))
     if ship.mesh is not None:
         write_offsets(ship.form, folder)
-    return "\n".join(_lines(ship, written, side_by_side, asked)), written
+    return "\n".join([*_lines(ship, written, side_by_side, asked), *more]), written
 
 
-def _of_hull(ship: Ship, asked: Asked) -> dict[str, tables.Table]:
-    """Hydrostatics and cross curves."""
+def _further(ship: Ship, asked: Asked, draughts: list[float], folder: Path) -> Iterator[Found]:
+    """Strength and limiting KG, where they are asked for. Raises LabError."""
+    try:
+        if asked.strength:
+            yield strengths(ship, folder)
+        if asked.limiting_kg:
+            yield limits(ship, draughts, asked, folder)
+    except Unavailable as error:
+        raise LabError(f"{ship.name}: {error}") from None
+
+
+def _draughts(ship: Ship, asked: Asked) -> list[float]:
+    """The draughts (m) of the tables: those asked for, else round ones."""
     draughts = [ship.draught(draught, None, asked.trim) for draught in asked.draught]
     draughts += [ship.draught(None, displacement, asked.trim) for displacement in asked.displacement]
-    draughts = draughts or ship.draughts(asked.step, asked.trim).tolist()
+    return draughts or ship.draughts(asked.step, asked.trim).tolist()
+
+
+def _of_hull(ship: Ship, asked: Asked, draughts: list[float]) -> dict[str, tables.Table]:
+    """Hydrostatics and cross curves."""
     try:
         return {
             "hydrostatics": tables.hydrostatics(ship.form, ship.water, draughts, asked.trim),
@@ -126,6 +151,8 @@ def _check(asked: Asked) -> None:
         if one.name not in ASKED_FOR and getattr(asked, one.name) != one.default:
             key = HERE.get(one.name, f"hull.{one.name}")
             raise LabError(f"--{one.name}: a ship file says that itself; leave it out and write {key} in the file.")
+    if asked.kg_trim and not asked.limiting_kg:
+        raise LabError("--kg-trim: is of --limiting-kg; give both.")
     if (asked.draught or asked.displacement) and asked.step:
         raise LabError("--step: is of a table at round draughts; leave it out, or --draught and --displacement.")
 

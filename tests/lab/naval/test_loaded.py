@@ -15,9 +15,9 @@ from lab.naval import sheet
 from lab.naval.compartments import read_holds
 from lab.naval.condition import condition
 from lab.naval.loaded import Loaded, Wind
-from lab.naval.points import read_points
+from lab.naval.points import check_near, read_points
 from lab.naval.stowed import Stowed, read_stowed
-from lab.naval.weights import Weights
+from lab.naval.weights import Weights, read_weights
 from lab.preset.find import load
 from lab.report.hull import Asked, examine
 from solvers.ship.naval.form import Form, prism
@@ -207,6 +207,7 @@ def test_hull_that_tapers_has_room_straight_between_stations(tmp_path):
         ("points", "name,kind,x,y,z\nhatch,hole,1,2,3\n", "row 1 (hatch) has the kind hole; give opening or deck"),
         ("points", "name,kind,x,y,z\nhatch,deck,1,2,high\n", "row 1 (hatch) needs a number for z (got high)"),
         ("points", "name,x\nhatch,1\n", "a table of points has the columns name, kind, x, y, z"),
+        ("points", "name,kind,x,y,z,height\nhatch,deck,1,2,3,4\n", 'unknown column "height"'),
     ],
 )
 def test_bad_tables_are_one_sentence(files, name, lines, words):
@@ -232,6 +233,33 @@ def test_ship_that_does_not_stand_is_told_so(files, tmp_path):
     assert "none: she comes to rest nowhere" in high.output and "she has none" in high.output
     assert "without a positive GM" in high.output and " pass" not in high.output
     assert "does not float: it must be above 0 and below the 50640 t" in str(heavy.exception)
+
+
+def test_a_misspelt_column_is_no_free_surface_left_out(tmp_path):
+    told = error_of(read_weights, _write(tmp_path / "w.csv", ["name,mass,lcg,tcg,vcg,fsmom", "all,9,1,0,1,500"]))
+    assert 'unknown column "fsmom"' in told and "fsm" in told.split(";")[1]
+    sums, _ = read_weights(_write(tmp_path / "r.csv", ["name,mass,lcg,tcg,vcg,fsm,Remark", "all,9,1,0,1,500,empty it"]))
+    assert sums.free_surface == 500.0
+
+
+@pytest.mark.parametrize("place", ["65000,12,12", "65,12000,12", "-40,0,12", "65,12,700"])
+def test_an_opening_far_from_the_hull_is_refused(tmp_path, place):
+    path = _write(tmp_path / "p.csv", ["name,kind,x,y,z", f"hatch,opening,{place}"])
+    assert "far from the hull" in error_of(check_near, read_points(path), prism(box(2.0 * HALF, DEPTH), LENGTH), path)
+
+
+def test_the_opening_that_floods_is_named_and_the_other_side_is_told(files, tmp_path):
+    _write(
+        files["points"],
+        ["name,kind,x,y,z", "vent,opening,60,-12,12", "hatch,opening,65,12,13", "door,opening,65,3,13.9"],
+    )
+    given = [str(files["hull"]), "--weights", str(files["weights"]), "--points", str(files["points"])]
+    told = CliRunner().invoke(hull, [*given, "--out", str(tmp_path / "out")]).output
+    ship = of_box(points=read_points(files["points"]), openings=("vent", "hatch", "door"))
+    hatch, vent = (np.degrees(np.arctan((z - DRAUGHT) / 12.0)) for z in (13.0, 12.0))  # wall-sided: z' = z − y tan φ
+    assert ship.flooded_by == "hatch" and np.degrees(ship.flooding) == pytest.approx(hatch, abs=0.05)
+    assert np.degrees(ship.flooding_to_the_other_side) == pytest.approx(vent, abs=0.05)
+    assert "by hatch" in told and "Heeled to the other side an opening floods" in told
 
 
 def test_criteria_need_weights(files, tmp_path):

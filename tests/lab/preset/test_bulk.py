@@ -17,7 +17,11 @@ BOX, HOLD = "bulk/box", "bulk/hold"
     ("preset", "changes", "said"),
     [
         (BOX, {"bulk.region": [["0 m", "0 m"], ["1 m", "0 m"], ["0 m", "5 m"]]}, r"bulk\.depth: give either"),
-        (BOX, {"bulk.repose": "20 deg"}, r"bulk\.repose: give either an angle of repose or a friction"),
+        (
+            BOX,
+            {"bulk.repose": "20 deg", "bulk.friction": 0.4},
+            r"bulk\.repose: give either an angle of repose or a friction",
+        ),
         (BOX, {"bulk.wall_friction": 0.5}, r"bulk\.wall_friction: 0\.5 is more than .*set bulk\.rough = true"),
         (BOX, {"bulk.wall_friction": 0.1, "bulk.rough": True}, r"bulk\.rough: .*leave bulk\.wall_friction out"),
         (BOX, {"bulk.fast_friction": 0.2}, r"bulk\.fast_friction: is less than the 0\.32"),

@@ -444,7 +444,7 @@ def idle(monkeypatch, tmp_path):
     done = SimpleNamespace(summary_text="", folder=tmp_path)
     monkeypatch.setattr("lab.runs.runner.run_preset", run_preset)
     monkeypatch.setattr("lab.paint.beside.second_process", nullcontext)
-    monkeypatch.setattr("lab.sweeps.sweep._complete", plan)
+    monkeypatch.setattr("lab.sweeps.sweep.complete", plan)
     monkeypatch.setattr("lab.runs.runner._complete", lambda *_: done)
 
 

@@ -210,3 +210,26 @@ def test_the_page_names_every_key():
     keys = {key.split(".")[-1] for key, _ in walk(ShipKeys)} - tables
     assert len(keys) > 40 and [key for key in keys if f"`{key}" not in page] == []
     assert [table for table in tables if not re.search(rf"\[({table}|\w+\.NAME\.{table})[.\]]", page)] == []
+
+
+def test_strength_of_a_condition_carries_all_that_she_weighs():
+    """The integral of weight along her, with what stands at a point, is her mass; shear and moment close."""
+    from lab.report.ship_file.further import beam_of
+
+    for condition in cargolab.hull("ship/handysize").conditions.values():
+        beam = beam_of(condition)
+        spread = np.trapezoid(beam.weight, beam.x) / 9.81
+        total = spread + sum(one.mass for one in beam.points)
+        assert total == pytest.approx(condition.weights.mass, rel=2e-3)  # of steps at the blocks' ends
+        assert abs(beam.open_shear) < 1e-3 * 9.81 * condition.weights.mass
+        assert abs(beam.moment[-1]) < 1e-6 * np.abs(beam.moment).max()
+
+
+def test_limits_and_strength_of_conditions_are_written(tmp_path):
+    given = ["ship/handysize", "--strength", "--limiting-kg", "--draught", "9", "--out", str(tmp_path / "out")]
+    told = CliRunner().invoke(hull, given)
+    assert told.exit_code == 0, told.exception
+    assert "departure: As loaded" in told.output and "largest sagging moment" in told.output
+    assert {"departure-strength.csv", "departure-strength.png", "limiting-kg.csv"} <= {
+        path.name for path in (tmp_path / "out").iterdir()
+    }
