@@ -110,6 +110,7 @@ def test_a_narrow_outlet_is_told(diameter, said):
     assert said in lines["warning"] if said else "warning" not in lines
 
 
+@pytest.mark.slow
 def test_the_bed_is_that_of_the_plates_bit_for_bit_and_runs_out(tmp_path):
     typed = {"tank.funnel": False, "parts": PLATES, "grains.region": REGION}
     made, by_hand = (

@@ -225,6 +225,7 @@ def test_strength_of_a_condition_carries_all_that_she_weighs():
         assert abs(beam.moment[-1]) < 1e-6 * np.abs(beam.moment).max()
 
 
+@pytest.mark.slow
 def test_limits_and_strength_of_conditions_are_written(tmp_path):
     given = ["ship/handysize", "--strength", "--limiting-kg", "--draught", "9", "--out", str(tmp_path / "out")]
     told = CliRunner().invoke(hull, given)
