@@ -33,6 +33,10 @@ docs: $(VENV)/installed-docs
 docs-links: $(VENV)/installed-docs
 	$(BIN)/sphinx-build --quiet --builder linkcheck docs docs/_build/links
 
+# Run the notebooks of the manual and keep their outputs: some ten minutes. make notebooks NAMES="hopper own_law" runs these
+notebooks: $(VENV)/installed-notebooks
+	$(BIN)/python docs/notebooks/execute.py $(NAMES)
+
 # What a release hands out, in dist/: the wheel and the source's archive, checked
 wheel: $(VENV)/installed-release
 	rm -rf dist
@@ -52,11 +56,6 @@ try-wheel:
 # Without a Python that Taichi has wheels for, uv gets one, if it is there.
 NEEDED := Python 3.11, 3.12 or 3.13 is needed, since Taichi has no wheels for others
 REMEDY := install uv (https://docs.astral.sh/uv), which gets one, or name one: make demo PYTHON=/path/to/python3.12
-
-# Run the notebooks of the manual and keep their outputs: some ten minutes. make notebooks NAMES="hopper own_law" runs these
-notebooks: $(VENV)/installed-notebooks
-	$(BIN)/python docs/notebooks/execute.py $(NAMES)
-
 $(VENV)/bin/pip:
 	@if test -n "$(PYTHON)"; then \
 		$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "Python cannot make a virtual environment: sudo apt install python3-venv"; exit 1; }; \

@@ -189,7 +189,7 @@ def cargoes(name: str | Path = "") -> "dict[str, Cargo]":
 
     `cargolab.cargoes("soybeans")["soybeans"].number("density").value` is in kg/m³. Raises cargolab.Error.
     """
-    from lab.preset.cargo.library import asked as found
+    from lab.preset.cargo.cargoes import asked as found
 
     return found(name)
 

@@ -51,7 +51,7 @@ def cargoes(name: str, as_json: bool) -> None:
     cargolab cargoes mine.toml       checks a file of one's own
     cargolab run imsbc/tilting-box-quick --set grains.cargo=soybeans
     """
-    from lab.preset.cargo.library import asked
+    from lab.preset.cargo.cargoes import asked
     from lab.preset.cargo.told import as_objects, card, table
 
     found = asked(name)

@@ -5,13 +5,14 @@ from pathlib import Path
 import click
 
 from lab.base.errors import LabError
+from lab.cli.completion import PresetName
 from lab.cli.options import (
     FilePath,
     check_files,
     json_option,
     out_option,
     quiet_option,
-    read_overrides,
+    set_option,
     tell,
     tell_json,
 )
@@ -137,7 +138,7 @@ def _option(key: str) -> str:
 
 
 @click.command()
-@click.argument("preset")
+@click.argument("preset", type=PresetName())
 @click.option("--height", type=POSITIVE, required=True, help="Significant wave height, m.")
 @click.option("--period", type=POSITIVE, required=True, help="Peak period, s.")
 @click.option("--hours", type=POSITIVE, default=3.0, show_default=True, help="How long the sea lasts.")
@@ -148,14 +149,7 @@ def _option(key: str) -> str:
 @click.option(
     "--size", "sizes", multiple=True, metavar="LENGTH", help="Diameter of these grains; repeat, coarse first."
 )
-@click.option(
-    "--set",
-    "overrides",
-    multiple=True,
-    metavar="KEY=VALUE",
-    callback=read_overrides,
-    help="Change a key of the preset; repeat for more.",
-)
+@set_option
 @click.option("--no-video", is_flag=True, help="Do not film the worst sea.")
 @click.option("--cost", "only_cost", is_flag=True, help="Tell what it costs, and run nothing.")
 @out_option("for runs and page", "renders/voyage/PRESET")

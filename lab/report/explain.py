@@ -13,7 +13,7 @@ from lab.preset.schema import Preset
 from lab.preset.sections.solids.funnel import caution, in_words
 from lab.preset.units import show
 from lab.report import cost, free, water
-from lab.report.cargo import bulk, coarse, grains, library
+from lab.report.cargo import bulk, coarse, grains, sources
 from lab.report.ship import describe
 from lab.report.wet import bed
 from solvers.motion.frame import is_turn
@@ -69,7 +69,7 @@ def sections(loaded: LoadedPreset) -> Sections:
         ("Wet bed", bed.described(preset, scene)),
         ("Bulk", bulk.described(preset, scene)),
         ("Ship", _ship(preset, simulation)),
-        ("Cargo", library.described(preset)),
+        ("Cargo", sources.described(preset)),
         ("Coarse grains", coarse.described(preset) if preset.grains else []),
         ("Axle", free.described(preset) if preset.axle else []),
         ("Bodies", free.bodies(preset, scene)),

@@ -17,7 +17,7 @@ from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording, ship_end
 from lab.report import ship, water
-from lab.report.cargo import bulk, grains, library
+from lab.report.cargo import bulk, grains, sources
 from lab.report.numbers import RULE, count_of, number, own
 from solvers.motion import OF_TANK
 
@@ -212,7 +212,7 @@ def _scene(recording: Recording) -> Iterator[str]:
         yield from water.in_tank(recording)
     if recording.preset.bulk:
         yield from bulk.in_tank(recording)
-    yield from map(inline, library.in_words(recording.preset))
+    yield from map(inline, sources.in_words(recording.preset))
     if not recording.preset.matters:
         yield "nothing in the tank"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))

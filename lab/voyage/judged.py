@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from lab.base.errors import LabError
 from lab.measures.value import Value, over_worlds
 from lab.preset.schema import Preset
 from lab.studies.reproduce.estimates import chance
@@ -12,6 +13,7 @@ from lab.sweeps.point import Point
 FEWEST = 10  # seeds, for a verdict
 WIDEST = 0.4  # of the interval of a share, for a verdict
 CELLS, ACROSS = 10, 100  # cells in a bed's depth, grains across a hold: with fewer the cargo is coarse
+LOST = "capsized_at", "flooded_at", "sunk_at"  # measures that only a lost ship has
 SHIFTED = 10.0  # % of the moment that the Grain Code assumes: from there on the cargo has shifted
 UNLIKE = 2.0  # factor between the shifts of bulk and of the finest grains above which they disagree
 
@@ -44,37 +46,46 @@ class Check:
 
 @dataclass(frozen=True)
 class Judged:
-    """The runs that ended, `points`; `folders` of all, and `checks` of the worst with grains.
+    """The runs that could be judged, `points`, of all `asked`, and `checks` of the worst with grains.
 
-    A ship that is lost counts as listed and her cargo as shifted. `limit` is in deg.
+    A ship that is lost, by capsizing or by flooding, counts as listed and her cargo as shifted. `limit` is in deg.
     """
 
     preset: Preset
     limit: float
     points: Sequence[Point]
     checks: Sequence[Check] = field(default=())
+    asked: int = 0
 
     def first(self, name: str) -> list[float | None]:
         """A measure of each run."""
         return [first_of(point, name) for point in self.points]
 
-    def share(self, name: str, least: float, lost: str = "capsized_at") -> Share:
-        """How many runs were lost or have a measure whose size is `least` or more."""
-        sizes, ends = self.first(name), self.first(lost)
-        seen = sum(
-            end is not None or (one is not None and abs(one) >= least) for one, end in zip(sizes, ends, strict=True)
-        )
-        return Share(seen, len(self.points))
+    @property
+    def losses(self) -> list[bool]:
+        """Whether she was lost, in each run."""
+        return [is_lost(point) for point in self.points]
+
+    def share(self, name: str, least: float) -> Share:
+        """How many runs were lost or have a measure whose size is `least` or more; of those that have one or the other.
+
+        Raises LabError where no run has.
+        """
+        known = [lost or size is not None for size, lost in zip(self.first(name), self.losses, strict=True)]
+        if not any(known):
+            raise LabError(f"none of the runs tells {name.replace('_', ' ')}: the preset's ship has no such measure.")
+        seen = [lost or abs(size or 0.0) >= least for size, lost in zip(self.first(name), self.losses, strict=True)]
+        return Share(sum(seen), sum(known))
 
     @property
     def lost(self) -> Share:
-        """Runs in which she capsized."""
-        return Share(sum(one is not None for one in self.first("capsized_at")), len(self.points))
+        """Runs in which she was lost."""
+        return Share(sum(self.losses), len(self.points))
 
     @property
     def frozen_lost(self) -> Share:
-        """Runs in which she would have capsized with her cargo frozen."""
-        return Share(sum(one is not None for one in self.first("frozen_capsized_at")), len(self.points))
+        """Runs in which she would have been lost with her cargo frozen."""
+        return Share(sum(is_lost(point, "frozen_") for point in self.points), len(self.points))
 
     @property
     def listed(self) -> Share:
@@ -93,29 +104,39 @@ class Judged:
     @property
     def worst(self) -> int:
         """The number of the run with a loss, else with the largest shift."""
-        lost, shares = self.first("capsized_at"), self.first("largest_shifted_share")
-        sizes = [(end is not None, abs(one or 0.0)) for one, end in zip(shares, lost, strict=True)]
+        shares = self.first("largest_shifted_share")
+        sizes = [(lost, abs(one or 0.0)) for one, lost in zip(shares, self.losses, strict=True)]
         return max(range(len(sizes)), key=sizes.__getitem__)
 
     @property
     def doubts(self) -> list[str]:
         """Why nothing can be told, each in a few words; empty where something can."""
-        found = []
-        if self.listed.n < FEWEST:
-            found.append(f"{self.listed.n} seeds are few, {FEWEST} are needed")
-        low, high = self.listed.interval
+        found, listed = [], self.listed
+        if listed.n < FEWEST:
+            found.append(f"{listed.n} seeds are few, {FEWEST} are needed")
+        if self.asked > listed.n:
+            found.append(f"{self.asked - listed.n} of {self.asked} runs could not be judged")
+        low, high = listed.interval
         if high - low > WIDEST:
             found.append(f"the interval is {high - low:.0%} wide, more than {WIDEST:.0%}: take more seeds")
         if coarse := coarseness(self.preset)[1]:
             found.append(coarse)
-        if self.checks:
-            bulk = abs(self.first("largest_shifted_share")[self.worst] or 0.0)
-            grains = abs(first_of(self.checks[-1].point, "largest_shifted_share") or 0.0)
-            low, high = sorted((bulk, grains))
-            if high >= SHIFTED and high > UNLIKE * low:
-                of = f"grains of {self.checks[-1].size}"
-                found.append(f"the worst shift is {bulk:.3g} % by the bulk and {grains:.3g} % by {of}")
-        return found
+        return found + self._unlike()
+
+    def _unlike(self) -> list[str]:
+        """Whether the bulk and the finest grains tell the worst run apart, in a few words."""
+        if not self.checks:
+            return []
+        worst, finest = self.points[self.worst], self.checks[-1]
+        if is_lost(worst) and is_lost(finest.point):
+            return []
+        bulk, grains = (first_of(point, "largest_shifted_share") for point in (worst, finest.point))
+        if bulk is None or grains is None:
+            return [f"the check with grains of {finest.size} tells no shift"]
+        low, high = sorted((abs(bulk), abs(grains)))
+        if high < SHIFTED or high <= UNLIKE * low:
+            return []
+        return [f"the worst shift is {abs(bulk):.3g} % by the bulk and {abs(grains):.3g} % by grains of {finest.size}"]
 
     @property
     def verdict(self) -> str:
@@ -133,6 +154,11 @@ def first_of(point: Point, name: str) -> float | None:
     """A measure of a run's only world; None where it was not found."""
     value = point.measures.get(name)
     return value.value if value is not None else None
+
+
+def is_lost(point: Point, of: str = "") -> bool:
+    """Whether she was lost in a run; `of` is "frozen_" for the ship with her cargo frozen."""
+    return any(first_of(point, of + name) is not None for name in LOST)
 
 
 def coarseness(preset: Preset) -> tuple[str, str]:

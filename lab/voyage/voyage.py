@@ -1,14 +1,16 @@
 """`cargolab voyage`: the runs of all seeds, the check of the worst with grains, and the page."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from lab.base.errors import LabError
 from lab.base.progress import Progress
+from lab.preset.find import load
 from lab.recording import open_recording
 from lab.report.cost import cost
 from lab.runs.runner import report, run_preset
+from lab.sweeps.point import Point
 from lab.sweeps.result import point_folder
 from lab.sweeps.sweep import complete
 from lab.voyage.asked import Voyage
@@ -51,6 +53,8 @@ def sail(
     grains: a preset of the same hold with grains, which runs the worst seed with each of the `sizes`, coarse first.
     Raises LabError and KeyboardInterrupt; finished runs are kept.
     """
+    if bool(grains) != bool(sizes):
+        raise LabError("--grains: give a preset of the same hold with grains, and a --size for each run of it.")
     sweep = voyage.sweep()
     folder = RENDERS / sweep.name if out is None else Path(out)
     complete(sweep, folder, video=False, plots=False, quiet=quiet)
@@ -59,22 +63,20 @@ def sail(
     if not points:
         raise LabError(f"{folder}: none of its runs could be ended; their summaries say why.")
     preset = sweep.points[0].resolved
-    judged = Judged(preset, voyage.limit, points)
+    judged = Judged(preset, voyage.limit, points, asked=voyage.seeds)
     worst = points[judged.worst]
     with Progress(quiet) as progress:
         report(worst.folder, progress, video=video, plots=True)
     if grains:
         begin = sweep.points[folders.index(worst.folder)].resolved.waves.begin
         checks = [_checked(voyage, folder, grains, size, worst.setting["waves.seed"], begin, quiet) for size in sizes]
-        judged = Judged(preset, voyage.limit, points, checks)
+        judged = replace(judged, checks=checks)
     return Outcome(folder, write(voyage, judged, sweep, folder), judged)
 
 
 def _checked(voyage: Voyage, folder: Path, grains: str, size: str, seed: int, begin: float, quiet: bool) -> Check:
     """The worst seed with grains of a size; one that was run is read."""
-    from lab.sweeps.point import Point
-
-    place = folder / CHECKS / size.replace(" ", "")
+    place = folder / CHECKS / load(grains).name.replace("/", "-") / size.replace(" ", "")
     if not _ended(place):
         changes = {"grains.diameter": size, "waves.seed": seed, "waves.begin": f"{begin!r} s"}
         run_preset(grains, voyage.sea | changes, place, video=False, quiet=quiet)

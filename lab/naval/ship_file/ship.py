@@ -27,7 +27,7 @@ class Condition(Loaded):
     """A loading condition: what `Loaded` is, and what she carries: fixed weights, liquids, cargo.
 
     With `by_transfer` her levers lose the actual transfer of the liquids at each heel; without it KG is raised by the
-    second moments of their free surfaces, as in GM fluid (2008 IS Code, part B 3.1 allows either).
+    second moments of their free surfaces, as in GM fluid (2008 IS Code, part B 3.1, for the effect).
     """
 
     name: str = ""

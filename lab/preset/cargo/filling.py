@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from functools import reduce
 from pathlib import Path
 
-from lab.preset.cargo.library import SUFFIX, cargo_named
+from lab.preset.cargo.cargoes import SUFFIX, cargo_named
 from lab.preset.cargo.numbers import Cargo, Number
 from lab.preset.merge import Layer, merged
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lab.preset.cargo.library import library
+from lab.preset.cargo.cargoes import library
 from lab.preset.cargo.numbers import QUANTITIES, Cargo, Number
 
 COLUMNS = {"density": "solids kg/m3", "bulk_density": "bed kg/m3", "stowage": "SF m3/t", "repose": "repose deg"}

@@ -7,10 +7,10 @@ import pytest
 
 import cargolab
 from lab.base.errors import LabError
-from lab.preset.cargo.library import FOLDER, cargo_named, cargo_of, library, own_cargo
+from lab.preset.cargo.cargoes import FOLDER, cargo_named, cargo_of, library, own_cargo
 from lab.preset.cargo.numbers import QUANTITIES
 from lab.preset.find import load
-from lab.report.cargo.library import described
+from lab.report.cargo.sources import described
 from solvers.bulk.given import Bulk
 
 ASKED = {

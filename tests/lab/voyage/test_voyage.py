@@ -58,14 +58,14 @@ def test_shares_have_the_interval_of_wilson():
     assert Share(10, 10).interval[0] == pytest.approx(1.0 - high)
 
 
-def run_of(shift: float, list_: float | None, lost: float | None = None) -> Point:
-    """A run with these measures."""
+def run_of(shift: float, list_: float | None, lost: float | None = None, how: str = "capsized_at") -> Point:
+    """A run with these measures, in which she was perhaps lost."""
     point = Point({"waves.seed": 1}, Path("nowhere"))
     none = float("nan")
     point.measures = {
         "largest_shifted_share": over_worlds([shift], "%"),
         "list_as_it_lay": over_worlds([none if list_ is None else list_], "deg"),
-        "capsized_at": over_worlds([none if lost is None else lost], "s"),
+        how: over_worlds([none if lost is None else lost], "s"),
     }
     return point
 
@@ -74,6 +74,19 @@ def test_a_lost_ship_counts_as_listed_and_lists_to_either_side_count(preset):
     judged = Judged(preset, 5.0, [run_of(1.0, 0.1)] * 7 + [run_of(30.0, -6.0), run_of(80.0, None, 300.0)])
     assert (judged.listed.seen, judged.lost.seen, judged.shifted.seen) == (2, 1, 2)
     assert judged.worst == 8
+
+
+@pytest.mark.parametrize("how", ["capsized_at", "flooded_at", "sunk_at"])
+def test_a_ship_is_lost_however_she_ends(preset, how):
+    judged = Judged(preset, 5.0, [run_of(1.0, 0.1)] * 9 + [run_of(2.0, None, 300.0, how)])
+    assert (judged.lost.seen, judged.listed.seen, judged.listed.n) == (1, 1, 10)
+
+
+def test_a_run_that_tells_no_list_is_none_without_one(preset):
+    judged = Judged(preset, 5.0, [run_of(1.0, 0.1)] * 30 + [run_of(1.0, None)] * 2, asked=33)
+    assert judged.listed.n == 30 and "3 of 33 runs could not be judged" in judged.verdict
+    with pytest.raises(LabError, match="none of the runs tells list as it lay"):
+        _ = Judged(preset, 5.0, [run_of(1.0, None)] * 12).listed
 
 
 @pytest.mark.parametrize(

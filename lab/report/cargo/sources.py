@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from math import isclose
 
 from lab.base.errors import LabError
+from lab.preset.cargo.cargoes import cargo_named
 from lab.preset.cargo.filling import SECTIONS, numbers_for
-from lab.preset.cargo.library import cargo_named
 from lab.preset.cargo.numbers import Cargo, Number
 from lab.preset.fields import taken_by
 from lab.preset.python.keys import value_of
